@@ -65,20 +65,22 @@ AppearanceView DeviceLook::use(const std::shared_ptr<const Appearance> &look, vo
   there_ = nullptr;
   view_ = {};
   if (!look) return view_;
-  if (!copied_) copied_ = std::make_unique<StreamMark>(device_);
-  copied_->wait();
+  turn_ = 1 - turn_;
+  auto &[staging_buffer, copied] = stagings_[turn_];
+  if (!copied) copied = std::make_unique<StreamMark>(device_);
+  copied->wait();
   const size_t colors = 4 * look->colors.size(), texcoords = 8 * look->texcoords.size(), visible = look->visible.size(),
                bytes = colors + texcoords + visible;
   if (bytes > memory_.size())
     check_cuda(cudaStreamSynchronize(static_cast<cudaStream_t>(stream)), "cudaStreamSynchronize");
-  auto *const staging = static_cast<char *>(staging_.reserve(bytes));
+  auto *const staging = static_cast<char *>(staging_buffer.reserve(bytes));
   auto *const memory = static_cast<char *>(memory_.reserve(bytes));
   if (colors) std::memcpy(staging, look->colors.data(), colors);
   if (texcoords) std::memcpy(staging + colors, static_cast<const void *>(look->texcoords.data()), texcoords);
   if (visible) std::memcpy(staging + colors + texcoords, look->visible.data(), visible);
   check_cuda(cudaMemcpyAsync(memory, staging, bytes, cudaMemcpyHostToDevice, static_cast<cudaStream_t>(stream)),
              "cudaMemcpyAsync");
-  copied_->set(stream);
+  copied->set(stream);
   view_.atoms = std::max(look->colors.size(), look->texcoords.size());
   if (colors) view_.colors = reinterpret_cast<const uint32_t *>(memory);
   if (texcoords) view_.texcoords = reinterpret_cast<const glm::vec2 *>(memory + colors);

@@ -21,9 +21,14 @@ class DeviceLook {
   const int device_;
   std::shared_ptr<const Appearance> there_;
   AppearanceView view_{};
-  PinnedBuffer staging_;
+  // Two in turn: the last look may still be on its way.
+  struct Staging {
+    PinnedBuffer memory;
+    std::unique_ptr<StreamMark> copied;
+  };
+  Staging stagings_[2];
+  int turn_ = 0;
   GrowingBuffer<DeviceMemory> memory_;
-  std::unique_ptr<StreamMark> copied_;  // from the staging memory
 };
 
 // Addresses on the device. Null: not wanted.

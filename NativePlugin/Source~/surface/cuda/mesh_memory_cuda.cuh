@@ -11,26 +11,48 @@
 #include "surface/stages/measure.h"
 
 #include <deque>
+#include <new>
 
 namespace quickses {
 
-// Memory of a device, for a pool: whoever gives it back last may be on any thread.
+// Memory of a device, for a pool: whoever gives it back last may be on any thread, that which draws among them, and the
+// driver gives memory back behind all that the device has to do.
+struct DeviceMeshMemory {
+  int device;
+  void *memory;
+  std::shared_ptr<const StreamMark> readers;
+
+  void release() const {
+    if (readers) readers->wait();
+    try {
+      const DeviceGuard guard(device);
+      DeviceMemory::release(memory);
+    } catch (const Error &) {  // the device is lost, and its memory with it
+    }
+  }
+};
 inline MeshPool::Source device_meshes_of(int device) {
-  return {DeviceMemory::kName,
-          [device](size_t bytes) {
-            const DeviceGuard guard(device);
-            return DeviceMemory::acquire(bytes);
-          },
-          [device](MeshBuffer &buffer) {
-            if (buffer.readers) buffer.readers->wait();
-            buffer.readers.reset();
-            try {
-              const DeviceGuard guard(device);
-              DeviceMemory::release(buffer.memory);
-            } catch (const Error &) {  // the device is lost, and its memory with it
-            }
-          },
-          2};
+  MeshPool::Source source;
+  source.name = DeviceMemory::kName;
+  source.acquire = [device](size_t bytes) {
+    const DeviceGuard guard(device);
+    return DeviceMemory::acquire(bytes);
+  };
+  source.release = [device](MeshBuffer &buffer) {
+    DeviceMeshMemory{device, buffer.memory, std::move(buffer.readers)}.release();
+  };
+  source.release_later = [device, now = source.release](MeshBuffer &buffer) {
+    auto *const later = new (std::nothrow) DeviceMeshMemory{device, buffer.memory, buffer.readers};
+    if (!later) return now(buffer);
+    release_later(
+        [](void *mesh) {
+          static_cast<DeviceMeshMemory *>(mesh)->release();
+          delete static_cast<DeviceMeshMemory *>(mesh);
+        },
+        later);
+  };
+  source.most_of_the_largest = 2;
+  return source;
 }
 
 // Page-locked memory, for a pool. To unlock its pages takes milliseconds.
@@ -70,6 +92,9 @@ class MeshMemory<CudaExecutor> {
   // One that was begun and given up, once nothing of it is on its way to the host any more.
   void forget_mesh() {
     wait_for_copies();
+    // The executor's stream writes there as well, and others may be given the memory.
+    if (!host_mesh_.lease().is_empty())
+      check_cuda(cudaStreamSynchronize(executor_.stream_handle()), "cudaStreamSynchronize");
     host_mesh_.forget();
     device_mesh_.forget();
   }

@@ -28,7 +28,7 @@ std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
   while (!(buffer->memory = source_.acquire(buffer->size))) {
     const std::unique_ptr<MeshBuffer> spare = buffer->size == bytes ? oldest_spare() : nullptr;
     if (spare)
-      release(*spare);
+      release(*spare, source_.release);
     else if (buffer->size > bytes)
       buffer->size = bytes;
     else
@@ -79,7 +79,7 @@ void MeshPool::give_back(std::unique_ptr<MeshBuffer> buffer) noexcept {
     }
   }
   for (const auto &one : surplus)
-    if (one) release(*one);
+    if (one) release(*one, source_.release_later ? source_.release_later : source_.release);
 }
 
 bool MeshPool::has_surplus() const {
@@ -102,7 +102,7 @@ void MeshPool::close() noexcept {
 }
 
 void MeshPool::drop_spares() noexcept {
-  while (const std::unique_ptr<MeshBuffer> spare = oldest_spare()) release(*spare);
+  while (const std::unique_ptr<MeshBuffer> spare = oldest_spare()) release(*spare, source_.release);
 }
 
 uint64_t MeshPool::bytes() const {
@@ -120,12 +120,12 @@ void MeshPool::count_numbers(int64_t bytes) {
   bytes_ += static_cast<uint64_t>(bytes);
 }
 
-void MeshPool::release(MeshBuffer &buffer) noexcept {
+void MeshPool::release(MeshBuffer &buffer, const Release &release_memory) noexcept {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     bytes_ -= buffer.size + buffer.components.size() + buffer.atom_areas.size();
   }
-  if (buffer.memory) source_.release(buffer);
+  if (buffer.memory) release_memory(buffer);
 }
 
 MeshLease::MeshLease(std::shared_ptr<MeshPool> pool, size_t bytes) : buffer_(pool->take(bytes)) {

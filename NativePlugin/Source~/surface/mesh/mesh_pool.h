@@ -27,11 +27,14 @@ struct MeshBuffer {
 // All functions may be called from any thread.
 class MeshPool {
  public:
+  using Release = std::function<void(MeshBuffer &)>;  // of its memory; must not throw
   struct Source {
     const char *name;
     std::function<void *(size_t)> acquire;
-    std::function<void(MeshBuffer &)> release;  // its memory; must not throw
-    size_t most_of_the_largest;                 // spares together, as a multiple of the largest of them
+    Release release;
+    size_t most_of_the_largest;  // spares together, as a multiple of the largest of them
+    // The same, where whoever gives a mesh back should not wait; empty: release.
+    Release release_later = {};
   };
   // Of a source of Arena, on the host.
   template <class AnySource>
@@ -59,7 +62,7 @@ class MeshPool {
 
  private:
   using Spares = std::vector<std::unique_ptr<MeshBuffer>>;
-  void release(MeshBuffer &buffer) noexcept;
+  void release(MeshBuffer &buffer, const Release &release_memory) noexcept;
   bool has_surplus() const;                               // the mutex is held, for the next two too
   Spares::const_iterator best_spare(size_t bytes) const;  // end: none fits
   std::unique_ptr<MeshBuffer> take_spare(size_t bytes);
