@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <thread>
 
 using quickses::check_atom_count;
 using quickses::check_choice;
@@ -161,7 +160,7 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     if (made->backend == QSES_BACKEND_CUDA) {
       made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, threads, o.memory_budget),
                                                          in_background);
-      const unsigned there_are = o.threads ? o.threads : std::thread::hardware_concurrency();
+      const unsigned there_are = o.threads ? o.threads : quickses::hardware_threads();
       made->copy_threads = std::make_unique<quickses::CpuThreads>(std::min(there_are, quickses::kMostCopyThreads));
       // Another context may have been loading the kernels when this one looked.
       made->description.preparing = 0;

@@ -20,6 +20,7 @@
 #include "cli/shown_output.h"
 #include "cli/suggestions.h"
 #include "cli/used_files.h"
+#include "cli/wildcards.h"
 #include "io/atomic_file.h"
 #include "io/file_path.h"
 #include "io/text.h"
@@ -370,6 +371,8 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     used = command;
     options.command = value;
   }
+  expand_wildcards(&options.inputs);
+  expand_wildcards(&options.trajectories);
   if (!options.inputs.empty()) options.input = options.inputs.front();
   if (used == &app && options.has_several_inputs()) check_command(app, options.input);
   resolve_output(options);

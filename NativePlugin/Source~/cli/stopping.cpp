@@ -2,6 +2,7 @@
 // What happens when the program is stopped from outside.
 #include "cli/stopping.h"
 
+#include "cli/utf8.h"
 #include "io/atomic_file.h"
 
 #if defined(_WIN32)
@@ -27,6 +28,7 @@ namespace {
 // Runs in a thread of its own. What comes next ends the process.
 BOOL WINAPI on_stop(DWORD) {
   io::abandon_files();
+  leave_utf8();
   return FALSE;
 }
 

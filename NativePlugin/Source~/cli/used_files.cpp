@@ -42,8 +42,7 @@ UsedFiles::File UsedFiles::file_of(const char *flag, const std::string &name, bo
 
 // As io::place_of, which asks about every folder of the path; of many files of one folder once.
 fs::path UsedFiles::place_of(const fs::path &path) {
-  std::error_code error;
-  if (fs::is_symlink(path, error)) return io::place_of(path);
+  if (io::is_link(path)) return io::place_of(path);
   const auto [folder, is_new] = folders_.try_emplace(path.parent_path());
   if (is_new) folder->second = io::place_of(path).parent_path();
   return folder->second / path.filename();

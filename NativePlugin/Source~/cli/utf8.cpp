@@ -9,6 +9,7 @@
 // after windows.h
 #include <shellapi.h>
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,9 +20,15 @@
 namespace quickses::cli {
 
 #if defined(_WIN32)
+namespace {
+UINT before = 0;
+}
+
 void use_utf8(int *argc, char ***argv) {
   static std::vector<std::string> texts;
   static std::vector<char *> pointers;
+  before = GetConsoleOutputCP();
+  std::atexit(leave_utf8);
   SetConsoleOutputCP(CP_UTF8);
   int count = 0;
   const std::unique_ptr<LPWSTR, decltype(&LocalFree)> wide(CommandLineToArgvW(GetCommandLineW(), &count), &LocalFree);
@@ -32,8 +39,13 @@ void use_utf8(int *argc, char ***argv) {
   *argc = count;
   *argv = pointers.data();
 }
+
+void leave_utf8() noexcept {
+  if (before != 0) SetConsoleOutputCP(before);
+}
 #else
 void use_utf8(int *, char ***) {}
+void leave_utf8() noexcept {}
 #endif
 
 }  // namespace quickses::cli

@@ -47,25 +47,8 @@ Unfinished &unfinished() {
 
 #if defined(_WIN32)
 
-// Null with errno set if it can't be made, EEXIST if there is such a file. It may be removed while it is open.
-std::FILE *create_new(const fs::path &name, const fs::path &) {
-  const HANDLE handle = CreateFileW(name.c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_DELETE, nullptr,
-                                    CREATE_NEW, FILE_ATTRIBUTE_NORMAL, nullptr);
-  if (handle == INVALID_HANDLE_VALUE) {
-    const DWORD code = GetLastError();
-    errno = code == ERROR_FILE_EXISTS            ? EEXIST
-            : code == ERROR_PATH_NOT_FOUND       ? ENOENT
-            : code == ERROR_DISK_FULL            ? ENOSPC
-            : code == ERROR_FILENAME_EXCED_RANGE ? ENAMETOOLONG
-                                                 : EACCES;
-    return nullptr;
-  }
-  const int descriptor = _open_osfhandle(reinterpret_cast<intptr_t>(handle), _O_BINARY);
-  std::FILE *const file = descriptor < 0 ? nullptr : _fdopen(descriptor, "wb");
-  if (!file && descriptor < 0) CloseHandle(handle);
-  if (!file && descriptor >= 0) _close(descriptor);
-  return file;
-}
+// Null with errno set if it can't be made, EEXIST if there is such a file.
+std::FILE *create_new(const fs::path &name, const fs::path &) { return open_stdio(name, "wbx"); }
 
 // Windows denies for a moment what another process is replacing, or looks into, as scanners for viruses do.
 template <class Action>
@@ -142,7 +125,7 @@ Target find_target(const std::string &path) {
   target.is_replaced = !fs::exists(status) || fs::is_regular_file(status);
   target.is_pipe = fs::is_fifo(status);
   // A link stays a link: what it points to is replaced, if it has a name (what /dev/stdout points to may have none).
-  if (target.is_replaced && fs::is_symlink(target.place, error)) {
+  if (target.is_replaced && is_link(target.place)) {
     const fs::path place = place_of(target.place);
     target.is_replaced = !fs::exists(status) || fs::equivalent(place, target.place, error);
     if (target.is_replaced) target.place = place;

@@ -19,11 +19,14 @@ std::string lower_extension(const std::filesystem::path &path);
 // The same of what is in a gzip file: that before .gz, if it ends so.
 std::string lower_extension_of_content(const std::filesystem::path &path);
 
-// Where a file is, or would be made: links are followed, also one that leads to nothing yet. Absolute, unless its
-// folder is missing; the path as it is where that can't be told, as in a circle of links.
+// Whether its last name is a link, of files or folders.
+bool is_link(const std::filesystem::path &path);
+
+// Where a file is, or would be made: links are followed, also one that leads to nothing yet (not on Windows). Absolute,
+// unless its folder is missing; the path as it is where that can't be told, as in a circle of links.
 std::filesystem::path place_of(const std::filesystem::path &path);
 
-// As std::fopen.
+// As std::fopen, of which mode is "rb", "wb" or "wbx".
 std::FILE *open_stdio(const std::filesystem::path &path, const char *mode);
 
 }  // namespace quickses::io

@@ -12,15 +12,13 @@
 #include <exception>
 #include <memory>
 #include <new>
-#include <thread>
 
 namespace quickses {
 
 class CpuThreads {
  public:
   explicit CpuThreads(const WorkerThreads &threads)
-      : count_(threads.count ? threads.count : std::max(1u, std::thread::hardware_concurrency())),
-        in_background_(threads.in_background) {}
+      : count_(threads.count ? threads.count : hardware_threads()), in_background_(threads.in_background) {}
 
   unsigned count() const { return count_; }
   // How many of them work at a time: more than there are processors are of no use.

@@ -23,10 +23,24 @@
 
 namespace quickses {
 
+unsigned hardware_threads() noexcept {
+  unsigned count = std::thread::hardware_concurrency();
+#if defined(_WIN32)
+  // That counts those of one group, of up to 64. From Windows 11 on a process has all groups, unless it was told
+  // otherwise.
+  USHORT groups[64], group_count = 64;
+  if (GetProcessGroupAffinity(GetCurrentProcess(), &group_count, groups) && group_count > 1) {
+    count = 0;
+    for (USHORT k = 0; k < group_count; ++k) count += static_cast<unsigned>(GetActiveProcessorCount(groups[k]));
+  }
+#endif
+  return std::max(1u, count);
+}
+
 unsigned processors() noexcept {
-  unsigned count = std::max(1u, std::thread::hardware_concurrency());
+  unsigned count = hardware_threads();
 #if defined(__linux__)
-  // That counts the machine's.
+  // Those are the machine's.
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) count = static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
   // Threads that are more than there is time for use it up, and then all of them stand still.

@@ -10,6 +10,9 @@ struct WorkerThreads {
   bool in_background;  // those that are the library's stand back behind threads of normal priority
 };
 
+// How many there are for this process; at least 1.
+unsigned hardware_threads() noexcept;
+
 // How many processors the calling thread, and what it starts, may run on, and are given time on; at least 1. A part of
 // one counts as one.
 unsigned processors() noexcept;

@@ -250,6 +250,20 @@ class Names(FilesTest):
                     if made.name not in ("Krambin ü.pdb", "Läufe.pdb", "rädii.txt"):
                         made.unlink()
 
+    def test_wildcards(self):
+        """Windows' shells leave them to programs; elsewhere they are letters of a name like others."""
+        (self.folder / "in").mkdir()
+        for name in ("b.pdb", "ü.pdb", "a.pdb", "c.pdb1", "d.ent"):
+            shutil.copy(CRAMBIN, self.folder / "in" / name)
+        self.assert_fails(INPUT, ["in/*.cif", "no such file"], "in/*.cif")
+        if not IS_WINDOWS:
+            self.assert_fails(INPUT, ["in/*.pdb", "no such file"], "in/*.pdb")
+            return
+        self.run_cpu("in/*.pdb", "-v", "3", "-o", "out_%s.ply", "--json", "all.jsonl")
+        reports = [json.loads(line) for line in (self.folder / "all.jsonl").read_text(encoding="utf-8").splitlines()]
+        self.assertEqual([os.path.basename(report["input"]) for report in reports], ["a.pdb", "b.pdb", "ü.pdb"])
+        self.run_cpu("p.pdb", "--trajectory", "man?.pdb", "-v", "3", "--csv", "a.csv")
+        self.assertEqual(len((self.folder / "a.csv").read_text().splitlines()), 1 + MODELS)
 
     @unittest.skipIf(IS_WINDOWS, "all names are UTF-16 there")
     def test_of_bytes_that_are_no_letters(self):

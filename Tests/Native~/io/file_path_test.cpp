@@ -81,6 +81,21 @@ TEST_F(FilePathTest, ErrorsNameTheFileAsItWasGiven) {
   EXPECT_EQ(message, "'" + name_ + "': no such file");
 }
 
+// As by version control, or by another program that writes it anew.
+TEST_F(FilePathTest, OpenTrajectoriesMayBeReplacedAndRemoved) {
+  write_atom();
+  const Trajectory open = Trajectory::open(name_);
+  AtomicFile other(name_);
+  other.write("other");
+  other.commit();
+  std::vector<float> xyz(3 * open.atom_count());
+  open.read_frame(0, xyz.data());
+  EXPECT_EQ(xyz, (std::vector<float>{1, 2, 3}));
+  EXPECT_TRUE(std::filesystem::remove(file_));
+  open.read_frame(0, xyz.data());
+  EXPECT_EQ(xyz, (std::vector<float>{1, 2, 3}));
+}
+
 #if defined(_WIN32)
 TEST_F(FilePathTest, WhatIsNotUtf8IsRefused) {
   EXPECT_EQ(error_of(ErrorKind::kInput, [] { read_structure("\xff.pdb", ReadOptions()); }),
