@@ -143,8 +143,6 @@ constexpr int kFramesBefore = 3;
 // Runs frames of a trajectory: the first three as they like, the others counted.
 template <class Frame>
 void expect_no_allocation(const Atoms &atoms, const Frame &frame, int frames = 30) {
-  if (!CAN_COUNT_ALLOCATIONS) GTEST_SKIP() << "allocations can't be counted in this build";
-  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the driver of the GPU allocates as it likes";
   Trajectory trajectory(atoms);
   for (int k = 0; k < kFramesBefore; ++k) frame(trajectory.next());
   Count count;
@@ -153,8 +151,15 @@ void expect_no_allocation(const Atoms &atoms, const Frame &frame, int frames = 3
   EXPECT_EQ(found.total, 0u) << found.callers;
 }
 
-TEST(Allocations, AreCounted) {
-  if (!CAN_COUNT_ALLOCATIONS) GTEST_SKIP();
+class Allocations : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!CAN_COUNT_ALLOCATIONS) GTEST_SKIP() << "allocations can't be counted in this build";
+    if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the driver of the GPU allocates as it likes";
+  }
+};
+
+TEST_F(Allocations, AreCounted) {
   Count count;
   void *volatile taken = std::malloc(10);  // or compilers leave it out
   std::free(taken);
@@ -164,7 +169,7 @@ TEST(Allocations, AreCounted) {
   EXPECT_GE(count.end().total, 4u);
 }
 
-TEST(Allocations, NoneInJobsOverATrajectory) {
+TEST_F(Allocations, NoneInJobsOverATrajectory) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -177,7 +182,7 @@ TEST(Allocations, NoneInJobsOverATrajectory) {
   });
 }
 
-TEST(Allocations, NoneInComputeOverATrajectory) {
+TEST_F(Allocations, NoneInComputeOverATrajectory) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -196,7 +201,7 @@ TEST(Allocations, NoneInComputeOverATrajectory) {
   });
 }
 
-TEST(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
+TEST_F(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -211,7 +216,7 @@ TEST(Allocations, NoneWithTheGridMethodAndGatheredPositions) {
 }
 
 // Atoms fly apart and meet again: the number of components changes from frame to frame.
-TEST(Allocations, NoneWithComponents) {
+TEST_F(Allocations, NoneWithComponents) {
   const Context context;
   Atoms atoms = crambin();
   for (int k = 0; k < 40; ++k) atoms.add(30 + 3 * k, 0, 0, 1.5);
@@ -228,7 +233,7 @@ TEST(Allocations, NoneWithComponents) {
   EXPECT_LT(fewest, most);
 }
 
-TEST(Allocations, NoneWhereSeriesTakeTurns) {
+TEST_F(Allocations, NoneWhereSeriesTakeTurns) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -244,7 +249,7 @@ TEST(Allocations, NoneWhereSeriesTakeTurns) {
       QSES_REMEMBERED_SERIES + 100);
 }
 
-TEST(Allocations, NoneWithAMemoryBudget) {
+TEST_F(Allocations, NoneWithAMemoryBudget) {
   const Context context(2, uint64_t(16) << 20);
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -254,7 +259,7 @@ TEST(Allocations, NoneWithAMemoryBudget) {
   });
 }
 
-TEST(Allocations, NoneWithAFrameBudget) {
+TEST_F(Allocations, NoneWithAFrameBudget) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -267,7 +272,7 @@ TEST(Allocations, NoneWithAFrameBudget) {
 }
 
 // So many atoms that sorting and scanning are done in parallel.
-TEST(Allocations, NoneWithManyAtoms) {
+TEST_F(Allocations, NoneWithManyAtoms) {
   const Context context;
   Atoms atoms;
   std::mt19937 random(1);
@@ -287,7 +292,7 @@ TEST(Allocations, NoneWithManyAtoms) {
 }
 
 // Meshes that are shown while the next ones are made, as a viewer keeps them: one that is shown, one that arrives.
-TEST(Allocations, NoneInAThousandFramesThatAreKept) {
+TEST_F(Allocations, NoneInAThousandFramesThatAreKept) {
   const Context context;
   const Atoms atoms = crambin();
   set_atoms(context, atoms);
@@ -317,10 +322,10 @@ TEST(Allocations, NoneInAThousandFramesThatAreKept) {
       },
       1000);
   for (qses_kept_mesh *one : kept) qses_kept_mesh_destroy(one);
-  EXPECT_TRUE(vertices > 0 || IsSkipped());
+  EXPECT_GT(vertices, 0u);
 }
 
-TEST(Allocations, NoneOnOneThread) {
+TEST_F(Allocations, NoneOnOneThread) {
   const Context context(1);
   const Atoms atoms = cluster(1000, 3);
   set_atoms(context, atoms);

@@ -41,7 +41,7 @@ struct Pair {
   Case c;
   Result first, other;
   Pair(const Case &wanted, unsigned form) : c(wanted) {
-    const Context context(1);
+    const Context context(1, 0, QSES_BACKEND_CPU);
     c.form = form;
     first = computed(context, c, settings_of_first(c.settings, form), 0);
     other = computed(context, c, settings_of_form(c.settings, form), form);
@@ -75,6 +75,7 @@ void flip_last_bit(T *value) {
 }
 
 TEST(Forms, AreWithoutDifferenceWhereThereIsNone) {
+  if (surface_fixture::tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "looks at meshes of the host";
   for (const Case &c : {three_atoms(), hollow_ball()})
     for (unsigned way = 1; way < kPastForms; way *= 2)
       for (unsigned more : {0u, unsigned(kHidden), unsigned(kReversed), unsigned(kHidden | kCompact | kReversed)}) {
@@ -188,7 +189,7 @@ TEST(Forms, AreComparedWithWhatAddsUp) {
 TEST(Picks, ThatAreWrongAreSeen) {
   Case c = three_atoms();
   c.settings.pickable = 1;
-  const Context context(1);
+  const Context context(1, 0, QSES_BACKEND_CPU);
   const Result good = computed(context, c, c.settings, 0);
   const Kept kept(context);
   const auto fault_of = [&](const Result &r) {
@@ -209,7 +210,7 @@ TEST(GaussianSurfaces, ThatAreWrongAreSeen) {
   Case c = three_atoms();
   c.settings.surface = QSES_SURFACE_GAUSSIAN;
   c.settings.creases = 0;
-  const Context context(1);
+  const Context context(1, 0, QSES_BACKEND_CPU);
   const Result good = computed(context, c, c.settings, 0);
   const auto fault_of = [](const Case &of, const Result &r) {
     Verdict v;
