@@ -4,11 +4,12 @@ using QuickSes.EngineDouble;
 using System.Collections;
 using System.Text.RegularExpressions;
 using UnityEngine;
+using UnityEngine.Events;
 using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
 {
-    /// <summary>What is wired in the inspector listens, so that failures are not logged.</summary>
+    /// <summary>What is wired in the inspector listens, so that failures are not logged, unless it is not called.</summary>
     internal sealed class WiredEventsTest
     {
         [UnityTest]
@@ -29,6 +30,36 @@ namespace QuickSes.Tests
             Assert.That(surface.LoadSource(), Is.False); // the log would fail the test
             Assert.That(wired, Does.Contain("b.pdb"));
             Assert.That(told, Is.EqualTo(2));
+            Object.DestroyImmediate(made);
+            yield return null;
+        }
+
+        [UnityTest]
+        public IEnumerator WhatIsNotCalledIsNoListener([Values] UnityEventCallState state, [Values] bool isEditMode)
+        {
+            if (isEditMode)
+                Engine.EnterEditMode();
+            bool isCalled = state == UnityEventCallState.EditorAndRuntime ||
+                (state == UnityEventCallState.RuntimeOnly && !isEditMode);
+            var made = new GameObject("surface");
+            var surface = made.AddComponent<MolecularSurface>();
+            var player = made.AddComponent<TrajectoryPlayer>();
+            int ofSurface = 0, ofPlayer = 0;
+            Wiring.Wire(surface.Events.Failed, message => { }, UnityEventCallState.Off);
+            Wiring.Wire(player.Events.Failed, message => { }, UnityEventCallState.Off);
+            Wiring.Wire(surface.Events.Failed, message => ++ofSurface, state);
+            Wiring.Wire(player.Events.Failed, message => ++ofPlayer, state);
+
+            surface.Source.SetFile("/no/such/folder/a.pdb");
+            player.StructureSource.SetFile("/no/such/folder/b.pdb");
+            if (!isCalled)
+            {
+                LogAssert.Expect(LogType.Error, new Regex("surface: .*a.pdb"));
+                LogAssert.Expect(LogType.Error, new Regex("surface: structure: .*b.pdb"));
+            }
+            Assert.That(surface.LoadSource(), Is.False);
+            Assert.That(player.Load(), Is.False);
+            Assert.That((ofSurface, ofPlayer), Is.EqualTo(isCalled ? (1, 1) : (0, 0)));
             Object.DestroyImmediate(made);
             yield return null;
         }

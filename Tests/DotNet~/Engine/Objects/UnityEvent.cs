@@ -8,32 +8,48 @@ namespace UnityEngine.Events
 
     public delegate void UnityAction<T0>(T0 arg0);
 
+    public enum UnityEventCallState
+    {
+        Off = 0,
+        EditorAndRuntime = 1,
+        RuntimeOnly = 2
+    }
+
     /// <summary>
-    /// Listeners of scripts, and, standing in for those of the inspector, some that only count as such. A listener that
-    /// throws stops the later ones, as in the engine.
+    /// Listeners of scripts, and, standing in for those of the inspector, some that only count as such, and are called
+    /// as their state says. A listener that throws stops the later ones, as in the engine.
     /// </summary>
     [Serializable]
     public abstract class UnityEventBase
     {
         private readonly List<Delegate> _listeners = new List<Delegate>();
-        private int _persistent;
+        private readonly List<UnityEventCallState> _states = new List<UnityEventCallState>(); // of the persistent ones
 
-        public int GetPersistentEventCount() => _persistent;
+        public int GetPersistentEventCount() => _states.Count;
+
+        public UnityEventCallState GetPersistentListenerState(int index) => _states[index];
+
+        public void SetPersistentListenerState(int index, UnityEventCallState state) => _states[index] = state;
 
         /// <summary>As if it were wired in the inspector.</summary>
-        internal void Wire(Delegate listener)
+        internal void Wire(Delegate listener, UnityEventCallState state)
         {
-            _listeners.Insert(_persistent++, listener);
+            _listeners.Insert(_states.Count, listener);
+            _states.Add(state);
         }
 
         internal IReadOnlyList<Delegate> Listeners => _listeners;
+
+        internal bool IsCalled(int index) => index >= _states.Count ||
+            _states[index] == UnityEventCallState.EditorAndRuntime ||
+            (_states[index] == UnityEventCallState.RuntimeOnly && Application.isPlaying);
 
         internal void Add(Delegate listener) => _listeners.Add(listener);
 
         internal void Remove(Delegate listener)
         {
             int k = _listeners.LastIndexOf(listener);
-            if (k >= _persistent)
+            if (k >= _states.Count)
                 _listeners.RemoveAt(k);
         }
     }
@@ -48,7 +64,8 @@ namespace UnityEngine.Events
         public void Invoke()
         {
             for (int k = 0; k < Listeners.Count; ++k)
-                ((UnityAction)Listeners[k])();
+                if (IsCalled(k))
+                    ((UnityAction)Listeners[k])();
         }
     }
 
@@ -62,7 +79,8 @@ namespace UnityEngine.Events
         public void Invoke(T0 arg0)
         {
             for (int k = 0; k < Listeners.Count; ++k)
-                ((UnityAction<T0>)Listeners[k])(arg0);
+                if (IsCalled(k))
+                    ((UnityAction<T0>)Listeners[k])(arg0);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using System;
 using UnityEngine;
+using UnityEngine.Events;
 using Object = UnityEngine.Object;
 
 namespace QuickSes
@@ -67,5 +68,25 @@ namespace QuickSes
         }
 
         public void Tell(Object owner) => Tell(true, owner);
+    }
+
+    /// <summary>Who was wired to a UnityEvent in the inspector.</summary>
+    internal static class WiredListeners
+    {
+        /// <summary>
+        /// Whether the event would call any of them now: it passes over those that are off, and those for run time only,
+        /// which is what the inspector begins with, outside of play mode.
+        /// </summary>
+        public static bool AreAnyCalled(UnityEventBase unityEvent)
+        {
+            for (int k = 0; k < unityEvent.GetPersistentEventCount(); ++k)
+            {
+                UnityEventCallState state = unityEvent.GetPersistentListenerState(k);
+                if (state == UnityEventCallState.EditorAndRuntime ||
+                    (state == UnityEventCallState.RuntimeOnly && Application.isPlaying))
+                    return true;
+            }
+            return false;
+        }
     }
 }

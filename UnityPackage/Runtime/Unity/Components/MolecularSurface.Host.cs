@@ -91,7 +91,7 @@ namespace QuickSes
 
         void ISurfaceHost.OnFailed(in QuickSesError error)
         {
-            if (!_failed.IsAny && _events.Failed.GetPersistentEventCount() == 0 && IsNewInTheLog(error))
+            if (!_failed.IsAny && !WiredListeners.AreAnyCalled(_events.Failed) && IsNewInTheLog(error))
                 Debug.LogError($"{name}: {error.Message}", this);
             _failed.Tell(error, this);
             if (this != null)

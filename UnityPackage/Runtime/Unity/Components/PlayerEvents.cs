@@ -38,7 +38,8 @@ namespace QuickSes
 
         /// <summary>
         /// See <see cref="TrajectoryPlayer.Failed"/>; with the sentence, which names the frame. What is wired in the
-        /// inspector counts as a listener, so that nothing is logged; AddListener does not.
+        /// inspector and is called now (not Off, nor Runtime Only in edit mode) counts as a listener, so that nothing is
+        /// logged; AddListener does not.
         /// </summary>
         public UnityEvent<string> Failed => _failed;
     }

@@ -34,8 +34,9 @@ namespace QuickSes
         public UnityEvent RefinementFinished => _refinementFinished;
 
         /// <summary>
-        /// See <see cref="MolecularSurface.Failed"/>; with the sentence. What is wired in the inspector counts as a
-        /// listener, so that nothing is logged; AddListener does not.
+        /// See <see cref="MolecularSurface.Failed"/>; with the sentence. What is wired in the inspector and is called
+        /// now (not Off, nor Runtime Only in edit mode) counts as a listener, so that nothing is logged; AddListener does
+        /// not.
         /// </summary>
         public UnityEvent<string> Failed => _failed;
 

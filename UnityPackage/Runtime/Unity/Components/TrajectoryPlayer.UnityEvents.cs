@@ -50,7 +50,7 @@ namespace QuickSes
 
         private void RaiseFailed(int frame)
         {
-            bool isHeard = _failed.IsAny || _events.Failed.GetPersistentEventCount() > 0;
+            bool isHeard = _failed.IsAny || WiredListeners.AreAnyCalled(_events.Failed);
             if (!isHeard && (frame < 0 || !_isDamageLogged))
                 Debug.LogError($"{name}: {LastError.Message}", this);
             _isDamageLogged |= frame >= 0;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using UnityEngine.Events;
+
+namespace QuickSes.EngineDouble.Tests
+{
+    /// <summary>As PersistentCall.GetRuntimeCall of the engine decides who is called.</summary>
+    public sealed class UnityEventTest
+    {
+        [Test]
+        public void WhatIsWiredIsCalledAsItsStateSays([Values] UnityEventCallState state, [Values] bool isEditMode)
+        {
+            if (isEditMode)
+                Engine.EnterEditMode();
+            var unityEvent = new UnityEvent<int>();
+            int wired = 0, added = 0;
+            Wiring.Wire(unityEvent, number => wired += number);
+            Assert.That(unityEvent.GetPersistentListenerState(0), Is.EqualTo(UnityEventCallState.RuntimeOnly));
+            unityEvent.SetPersistentListenerState(0, state);
+            unityEvent.AddListener(number => added += number);
+            unityEvent.Invoke(3);
+            bool isCalled = state == UnityEventCallState.EditorAndRuntime ||
+                (state == UnityEventCallState.RuntimeOnly && !isEditMode);
+            Assert.That(wired, Is.EqualTo(isCalled ? 3 : 0));
+            Assert.That(added, Is.EqualTo(3));
+            Assert.That(unityEvent.GetPersistentEventCount(), Is.EqualTo(1), "called or not");
+        }
+    }
+}
