@@ -90,6 +90,27 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void UndoOfAddComponentGivesMeshAndMaterialBack()
+        {
+            GameObject cube = GameObject.CreatePrimitive(PrimitiveType.Cube);
+            _created.Keep(cube.transform);
+            var filter = cube.GetComponent<MeshFilter>();
+            var renderer = cube.GetComponent<MeshRenderer>();
+            Mesh mesh = filter.sharedMesh;
+            Material material = renderer.sharedMaterial;
+            Undo.IncrementCurrentGroup();
+            MolecularSurface added = Undo.AddComponent<MolecularSurface>(cube);
+            CreatedSurfaces.GiveAtoms(added);
+            Assert.That(added.ComputeNow(), Is.True, added.LastError.Message);
+            Assert.That(filter.sharedMesh, Is.SameAs(added.Mesh));
+            Assert.That(renderer.sharedMaterial, Is.Not.SameAs(material));
+            Undo.PerformUndo();
+            Assert.That(added == null, Is.True);
+            Assert.That(filter.sharedMesh, Is.SameAs(mesh));
+            Assert.That(renderer.sharedMaterial, Is.SameAs(material));
+        }
+
+        [Test]
         public void TheInspectorRepaintsWhileItIsBusyAndOnceMore()
         {
             UnityEditorInspector inspector = UnityEditorInspector.CreateEditor(_surface);

@@ -40,6 +40,19 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator ItComesBackWhenTheComponentIsRemoved()
+        {
+            MolecularSurface surface = Instance(true);
+            TestMolecules.Blob(30, 1, out Vector3[] positions, out float[] radii);
+            surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            MeshFilter filter = Filter(surface);
+            Assert.That(filter.sharedMesh, Is.SameAs(surface.Mesh));
+            Object.DestroyImmediate(surface);
+            Assert.That(filter.sharedMesh, Is.SameAs(_baked));
+        }
+
+        [UnityTest]
         public IEnumerator ASurfaceTakesItsPlaceWhenItIsThere()
         {
             MolecularSurface surface = Instance(true);

@@ -110,6 +110,26 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AMeshThatASurfaceReplacedComesBackWithoutTheComponent([Values] bool isReloaded)
+        {
+            Engine.EnterEditMode();
+            var cube = new Mesh();
+            var made = new GameObject("cube", typeof(MeshFilter));
+            var filter = made.GetComponent<MeshFilter>();
+            filter.sharedMesh = cube;
+            var surface = made.AddComponent<MolecularSurface>();
+            surface.SetAtoms(_positions, _radii);
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            if (isReloaded)
+                Engine.Reload();
+            Assert.That(filter.sharedMesh, Is.SameAs(surface.Mesh));
+            Object.DestroyImmediate(surface);
+            Assert.That(filter.sharedMesh, Is.SameAs(cube));
+            Object.DestroyImmediate(made);
+            Object.DestroyImmediate(cube);
+        }
+
+        [UnityTest]
         public IEnumerator PlayModeWithoutReloadOfTheSceneEither()
         {
             var rig = new SurfaceRig();

@@ -48,6 +48,7 @@ namespace QuickSes
         private void OnDestroy()
         {
             _isDestroyed = true;
+            GiveMeshBack();
             LoseStructure();
             CancelLoading();
             _session?.Dispose();
@@ -91,8 +92,19 @@ namespace QuickSes
 
         private void AttachMesh()
         {
-            GetComponent<MeshFilter>().sharedMesh = Shown.Mesh;
+            var filter = GetComponent<MeshFilter>();
+            Mesh present = filter.sharedMesh;
+            if (present != null && !SurfaceMesh.IsMade(present))
+                _replacedMesh = present;
+            filter.sharedMesh = Shown.Mesh;
             _isMeshAttached = true;
+        }
+
+        // The component was removed, or Undo took it back: the own mesh goes with it.
+        private void GiveMeshBack()
+        {
+            if (_session != null && _replacedMesh != null && ShowsOwnMesh)
+                GetComponent<MeshFilter>().sharedMesh = _replacedMesh;
         }
 
         // A mesh of somebody else's, such as a baked one, stays until there is a surface to show in its place: where
@@ -173,7 +185,10 @@ namespace QuickSes
         {
             var meshRenderer = GetComponent<MeshRenderer>();
             if (IsDefault(meshRenderer.sharedMaterial))
+            {
+                Undo.RecordObject(meshRenderer, "Add Component"); // a step with what calls it
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
+            }
             EditorApplication.delayCall += ShowDemoUnlessFed;
         }
 

@@ -92,6 +92,7 @@ namespace QuickSes
         [NonSerialized] private AtomColorTexture _texture;
         [NonSerialized] private MeshRenderer _renderer;
         [NonSerialized] private bool _isMeshAttached; // to the filter
+        private Mesh _replacedMesh; // what the filter had of somebody else's; not in files, but kept over domain reloads
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
