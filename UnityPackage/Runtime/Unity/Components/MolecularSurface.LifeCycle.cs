@@ -188,6 +188,7 @@ namespace QuickSes
             {
                 Undo.RecordObject(meshRenderer, "Add Component"); // a step with what calls it
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
+                PrefabUtility.RecordPrefabInstancePropertyModifications(meshRenderer);
             }
             EditorApplication.delayCall += ShowDemoUnlessFed;
         }
@@ -202,6 +203,7 @@ namespace QuickSes
                 return;
             _source.SetAsset(AssetDatabase.LoadAssetAtPath<TextAsset>(AssetDatabase.GUIDToAssetPath(DemoMolecule)));
             EditorUtility.SetDirty(this);
+            PrefabUtility.RecordPrefabInstancePropertyModifications(this);
             FollowSourceSoon();
         }
 
