@@ -162,6 +162,26 @@ namespace QuickSes.EngineDouble.Tests
         }
 
         [Test]
+        public void PlayModeInTheSceneOfEditModeWakesOnlyWhatDidNotRunThere()
+        {
+            Engine.EnterEditMode();
+            var ofEditMode = new GameObject().AddComponent<EditRecorder>();
+            Engine.Frame(0.1);
+            Taken();
+            Engine.EnterPlayModeInTheSameScene();
+            Assert.That(Application.isPlaying, Is.True);
+            Assert.That(ofEditMode != null);
+            Engine.Frame(0.1);
+            Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable", "OnEnable", "Start", "Update", "LateUpdate" }));
+
+            Engine.EnterEditMode();
+            new GameObject().AddComponent<Recorder>();
+            Taken();
+            Engine.EnterPlayModeInTheSameScene();
+            Assert.That(Taken(), Is.EqualTo(new[] { "Awake", "OnEnable" }));
+        }
+
+        [Test]
         public void QuittingTellsAll()
         {
             new GameObject().AddComponent<Recorder>();

@@ -109,6 +109,74 @@ namespace QuickSes.Tests
             played.Dispose();
         }
 
+        private sealed class Feeder : MonoBehaviour
+        {
+            public MolecularSurface Surface;
+
+            private void Awake()
+            {
+                TestMolecules.Blob(300, 1, out Vector3[] positions, out float[] radii);
+                Surface.SetAtoms(positions, radii);
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator InTheSceneOfEditModeASourceIsReadAgainAndTold()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            int loaded = 0;
+            rig.Surface.Loaded += () => ++loaded;
+            rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            rig.Surface.BeginLoadSource();
+            yield return rig.Settle();
+            Assert.That((loaded, rig.Finished), Is.EqualTo((1, 1)));
+            Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            rig.Levels.Clear();
+            yield return SurfaceRig.Until(() => rig.Finished > 1);
+            Assert.That((loaded, rig.Finished), Is.EqualTo((2, 2)));
+            Assert.That(rig.Levels, Is.Not.Empty);
+            Assert.That(rig.GameObject.GetComponent<MeshFilter>().sharedMesh, Is.SameAs(rig.Surface.Mesh));
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1));
+            rig.Dispose();
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
+        }
+
+        [UnityTest]
+        public IEnumerator InTheSceneOfEditModeScriptsFeedAgain([Values] bool areFirst)
+        {
+            Engine.EnterEditMode();
+            Feeder feeder = areFirst ? new GameObject("feeder").AddComponent<Feeder>() : null;
+            var rig = new SurfaceRig();
+            if (areFirst)
+                feeder.Surface = rig.Surface;
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return rig.Settle();
+            Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            rig.Levels.Clear();
+            rig.Finished = rig.Requests = 0;
+            if (!areFirst)
+                rig.Surface.AtomsRequested += () => rig.Surface.SetAtoms(_positions, _radii);
+            yield return SurfaceRig.Until(() => rig.Finished > 0);
+            Assert.That(rig.Requests, Is.EqualTo(areFirst ? 0 : 1));
+            Assert.That(rig.Levels, Is.Not.Empty);
+            SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
+            rig.Dispose();
+        }
+
+        [UnityTest]
+        public IEnumerator AnOpenPrefabStaysAsItIsInPlayMode()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            Engine.OpenAsPrefab(rig.GameObject);
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return rig.Settle();
+            Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
+            rig.Dispose();
+        }
+
         [UnityTest]
         public IEnumerator AMeshThatASurfaceReplacedComesBackWithoutTheComponent([Values] bool isReloaded)
         {

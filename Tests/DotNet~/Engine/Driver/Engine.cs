@@ -174,17 +174,36 @@ namespace QuickSes.EngineDouble
         public static void EnterPlayModeWithoutReload(params Assembly[] assemblies)
         {
             DestroyScene();
+            BeginToPlay(assemblies);
+            Initialize(assemblies, RuntimeInitializeLoadType.AfterSceneLoad);
+        }
+
+        /// <summary>
+        /// The same without a reload of the scene either: scripts that ran in edit mode keep all their fields, and are told
+        /// OnDisable and OnEnable, but neither OnDestroy nor Awake; the others wake.
+        /// </summary>
+        public static void EnterPlayModeInTheSameScene(params Assembly[] assemblies)
+        {
+            foreach (MonoBehaviour script in new List<MonoBehaviour>(Lifecycle.Enabled))
+                Lifecycle.Disable(script);
+            BeginToPlay(assemblies);
+            foreach (Object item in new List<Object>(ObjectRegistry.Objects))
+            {
+                if (!(item is MonoBehaviour script) || script == null)
+                    continue;
+                script.State.IsStarted = false;
+                Lifecycle.Refresh(script);
+            }
+            Initialize(assemblies, RuntimeInitializeLoadType.AfterSceneLoad);
+        }
+
+        private static void BeginToPlay(Assembly[] assemblies)
+        {
             Application.isPlaying = true;
             Time.Reset();
-            var order = new[]
-            {
-                RuntimeInitializeLoadType.SubsystemRegistration, RuntimeInitializeLoadType.AfterAssembliesLoaded,
-                RuntimeInitializeLoadType.BeforeSplashScreen, RuntimeInitializeLoadType.BeforeSceneLoad,
-                RuntimeInitializeLoadType.AfterSceneLoad
-            };
-            foreach (RuntimeInitializeLoadType type in order)
-                foreach (Assembly assembly in assemblies)
-                    Initialize(assembly, type);
+            Initialize(assemblies, RuntimeInitializeLoadType.SubsystemRegistration,
+                RuntimeInitializeLoadType.AfterAssembliesLoaded, RuntimeInitializeLoadType.BeforeSplashScreen,
+                RuntimeInitializeLoadType.BeforeSceneLoad);
         }
 
         /// <summary>
@@ -209,6 +228,13 @@ namespace QuickSes.EngineDouble
                     return;
                 root.DestroyNow();
             }
+        }
+
+        private static void Initialize(Assembly[] assemblies, params RuntimeInitializeLoadType[] types)
+        {
+            foreach (RuntimeInitializeLoadType type in types)
+                foreach (Assembly assembly in assemblies)
+                    Initialize(assembly, type);
         }
 
         private static void Initialize(Assembly assembly, RuntimeInitializeLoadType type)

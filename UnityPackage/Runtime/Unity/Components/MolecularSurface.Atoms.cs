@@ -125,6 +125,7 @@ namespace QuickSes
         // Of a script, a file or a player.
         private void TakeAtoms(ReadOnlySpan<Vector3> positions, ReadOnlySpan<float> radii)
         {
+            LeaveEditMode(); // who is enabled earlier may set atoms before this is
             bool haveMoved = Session.Atoms.SetAtoms(Numbers(positions), radii);
             CancelLoading();
             if (!haveMoved)

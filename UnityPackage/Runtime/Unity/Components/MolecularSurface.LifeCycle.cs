@@ -23,6 +23,7 @@ namespace QuickSes
         private void OnEnable()
         {
             _asksForAtoms = true;
+            LeaveEditMode();
             AttachMeshUnlessBaked();
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
@@ -33,6 +34,22 @@ namespace QuickSes
             Session.Resume();
             QueueEditorUpdate();
         }
+
+        // Where play mode begins without a reload of domain and scene, the component is as it was in edit mode: what came
+        // there would be told to nobody here.
+        private void LeaveEditMode()
+        {
+            if (_session == null || _session.IsDisposed || _isSessionOfPlayMode == IsInPlayMode)
+                return;
+            LoseStructure();
+            _session.Dispose();
+            _session = null;
+            _isScriptFed = false;
+            _loadedSource = null;
+            _loggedFailure = default;
+        }
+
+        private bool IsInPlayMode => this != null && Application.IsPlaying(this); // false in an open prefab
 
         // The picture stays, as that of other components that are switched off, also where it is somebody else's.
         private void OnDisable()

@@ -88,6 +88,7 @@ namespace QuickSes
 
         // Not serialised, so it is gone after a domain reload, like the native memory it stands for.
         [NonSerialized] private SurfaceSession _session;
+        [NonSerialized] private bool _isSessionOfPlayMode;
         [NonSerialized] private ShownSurface _shown;
         [NonSerialized] private AtomColorTexture _texture;
         [NonSerialized] private MeshRenderer _renderer;
@@ -216,6 +217,7 @@ namespace QuickSes
                 {
                     _shown = new ShownSurface();
                     _session = new SurfaceSession(this);
+                    _isSessionOfPlayMode = IsInPlayMode;
                 }
                 return _session;
             }
