@@ -19,7 +19,7 @@ namespace QuickSes.Editor
             guiHandler = _ => Draw()
         };
 
-        /// <summary>The fields of the settings; what is edited holds from then on.</summary>
+        /// <summary>The fields of the settings, which see to it that what is edited holds.</summary>
         public static void Draw(SerializedObject settings)
         {
             settings.Update();
@@ -32,10 +32,7 @@ namespace QuickSes.Editor
                 string label = unit == null ? property.displayName : $"{property.displayName} ({unit})";
                 EditorGUILayout.PropertyField(property, new GUIContent(label, property.tooltip));
             }
-            if (!settings.ApplyModifiedProperties())
-                return;
-            SurfaceScheduler.ResetOptions();
-            SurfaceScheduler.ReleaseInBackground(); // contexts have the options they were made with
+            settings.ApplyModifiedProperties();
         }
 
         private static void Draw()

@@ -54,6 +54,25 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator EditsOfTheProjectHoldAtOnceAndLoadingItChangesNothing()
+        {
+            Put(2, 3, 500, 1);
+            SurfaceRig rig = SurfaceRig.WithBlob(30, 1);
+            yield return rig.Settle();
+            SurfaceScheduler.MaxContexts = 7;
+            int contexts = SurfaceScheduler.ContextCount;
+            SurfaceScheduler.FollowProjectOptions(); // the asset was loaded
+            Assert.That(Options(), Is.EqualTo((7, 3u, 500000000ul, 1)));
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(contexts).And.GreaterThan(0));
+
+            Set(QuickSesSettings.Find(), "_threads", 1); // by whomever, such as Undo
+            SurfaceScheduler.FollowProjectOptions();
+            Assert.That(Options(), Is.EqualTo((2, 1u, 500000000ul, 1)));
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            rig.Dispose();
+        }
+
+        [UnityTest]
         public IEnumerator WhatIsOutOfRangeInAFileIsBroughtIntoIt()
         {
             Put(0, -4, -1, -2);

@@ -27,6 +27,7 @@ namespace QuickSes
     public static partial class SurfaceScheduler
     {
         private static SchedulerOptions s_options;
+        private static SchedulerOptions s_projectOptions; // as they were read
         private static bool s_areOptionsRead;
 
         /// <summary>
@@ -72,6 +73,7 @@ namespace QuickSes
                 {
                     s_options = SchedulerOptions.Default;
                     ReadProjectOptions(ref s_options);
+                    s_projectOptions = s_options;
                     s_areOptionsRead = true;
                 }
                 return ref s_options;
@@ -84,6 +86,21 @@ namespace QuickSes
             s_areOptionsRead = false;
             GpuMeshPlan = default;
             GpuDelivery.ChooseAgain();
+        }
+
+        /// <summary>
+        /// The options of the project may have been edited: if so, they hold from now on, in place of what scripts have set.
+        /// </summary>
+        internal static void FollowProjectOptions()
+        {
+            if (!s_areOptionsRead)
+                return;
+            SchedulerOptions project = SchedulerOptions.Default;
+            ReadProjectOptions(ref project);
+            if (project.Equals(s_projectOptions))
+                return;
+            ResetOptions();
+            ReleaseInBackground(); // contexts have the options they were made with
         }
 
         static partial void ReadProjectOptions(ref SchedulerOptions options);

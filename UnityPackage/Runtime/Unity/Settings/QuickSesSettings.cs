@@ -37,6 +37,16 @@ namespace QuickSes
         /// <summary>The project's; null: there is none, and the defaults hold. Main thread only.</summary>
         public static QuickSesSettings Find() => Resources.Load<QuickSesSettings>(AssetName);
 
+#if UNITY_EDITOR
+        // The inspector, Undo, a preset or version control wrote it, or it was loaded. Later, since assets can't be loaded
+        // while values are validated.
+        private void OnValidate()
+        {
+            UnityEditor.EditorApplication.delayCall -= SurfaceScheduler.FollowProjectOptions;
+            UnityEditor.EditorApplication.delayCall += SurfaceScheduler.FollowProjectOptions;
+        }
+#endif
+
         // What files hold may be out of range.
         internal void CopyTo(ref SchedulerOptions options)
         {
