@@ -80,7 +80,7 @@ namespace QuickSes.Editor
                 using (new EditorGUI.DisabledScope(!player.IsReady))
                 {
                     if (GUILayout.Button(new GUIContent("Stop", "Goes back to the beginning and stays there.")))
-                        player.Stop();
+                        Stop(player);
                 }
                 if (GUILayout.Button(new GUIContent("Reload", "Reads the files again.")))
                     player.Load();
@@ -102,11 +102,21 @@ namespace QuickSes.Editor
                 return;
             double place = player.Interpolate ? chosen : System.Math.Round(chosen);
             if (Application.IsPlaying(player))
-            {
                 player.Frame = place;
-                return;
-            }
-            frame.floatValue = (float)place;
+            else
+                EditPlace((float)place);
+        }
+
+        private void Stop(TrajectoryPlayer player)
+        {
+            if (!Application.IsPlaying(player))
+                EditPlace((float)player.Beginning);
+            player.Stop();
+        }
+
+        private void EditPlace(float place)
+        {
+            serializedObject.FindProperty("_frame").floatValue = place;
             serializedObject.ApplyModifiedProperties();
         }
 

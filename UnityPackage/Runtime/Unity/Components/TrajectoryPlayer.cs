@@ -135,12 +135,23 @@ namespace QuickSes
         public void Stop()
         {
             _isPlaying = false;
-            SteerHead();
+            SetPlace(Beginning);
             _head.Rewind();
-            SetPlace(IsReady ? _head.Position : 0);
             _chosenFrame = -1;
             _isWaiting = false;
             RequestUpdate();
+        }
+
+        /// <summary>Where <see cref="Stop"/> goes.</summary>
+        internal double Beginning
+        {
+            get
+            {
+                SteerHead();
+                PlayHead head = _head;
+                head.Rewind();
+                return IsReady ? head.Position : 0;
+            }
         }
 
         private void OnEnable()
