@@ -77,6 +77,9 @@ Shader "QuickSES/Molecular Surface Transparent"
             // Clustered lights: URP 14 to 17.0 say _FORWARD_PLUS, later ones _CLUSTER_LIGHT_LOOP.
             #pragma multi_compile _ _FORWARD_PLUS _CLUSTER_LIGHT_LOOP
             #pragma multi_compile_fragment _ _ADDITIONAL_LIGHT_SHADOWS
+            // From URP 17.1 on, probes that are blended are in an atlas, and unity_SpecCube0 is none of them.
+            #pragma multi_compile_fragment _ _REFLECTION_PROBE_BLENDING
+            #pragma multi_compile_fragment _ _REFLECTION_PROBE_ATLAS
             #pragma multi_compile_fragment _ _SHADOWS_SOFT
             #pragma multi_compile_fog
             #pragma multi_compile_instancing
