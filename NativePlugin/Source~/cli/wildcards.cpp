@@ -24,6 +24,7 @@ namespace {
 std::vector<std::string> files_that_fit(const std::string &name) {
   std::vector<std::string> files;
   const std::filesystem::path pattern = io::path_of(name);
+  const std::string folder = name.substr(0, name.find_last_of("/\\:") + 1);
   WIN32_FIND_DATAW found;
   const HANDLE search = FindFirstFileW(pattern.c_str(), &found);
   if (search == INVALID_HANDLE_VALUE) return files;
@@ -31,7 +32,7 @@ std::vector<std::string> files_that_fit(const std::string &name) {
     // The search looks at short names, too, by which *.pdb fits a.pdb1.
     if (!(found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) &&
         PathMatchSpecW(found.cFileName, pattern.filename().c_str()))
-      files.push_back(io::utf8_of(pattern.parent_path() / found.cFileName));
+      files.push_back(folder + io::utf8_of(found.cFileName));
   } while (FindNextFileW(search, &found));
   FindClose(search);
   std::sort(files.begin(), files.end());
