@@ -2,9 +2,6 @@
 #include "cli/utf8.h"
 
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
 #include <windows.h>
 // after windows.h
 #include <shellapi.h>

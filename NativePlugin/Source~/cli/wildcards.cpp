@@ -2,9 +2,6 @@
 #include "cli/wildcards.h"
 
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
 #include <windows.h>
 // after windows.h
 #include <shlwapi.h>

@@ -9,6 +9,10 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     -Wall -Wextra "$<$<BOOL:${QUICKSES_WERROR}>:-Werror>")
 endif()
 
+if(WIN32)
+  target_compile_definitions(quickses_options INTERFACE NOMINMAX) # no windows.h defines min and max
+endif()
+
 if(QUICKSES_SANITIZE)
   set(_sanitize "-fsanitize=${QUICKSES_SANITIZE};-fno-omit-frame-pointer")
   if(QUICKSES_SANITIZE MATCHES "undefined")

@@ -17,9 +17,6 @@
 #include <emmintrin.h>
 #endif
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
 #include <windows.h>
 #endif
 

@@ -2,9 +2,6 @@
 #include "process/worker_threads.h"
 
 #if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
 #include <windows.h>
 #elif defined(__linux__)
 #include <sched.h>

@@ -2,9 +2,6 @@
 // Windows: where the library is entered (-Wl,--entry). When a process ends, Windows has ended all of its other threads
 // before, wherever they were: the C++ runtime's destructors would wait for ever for a lock that one of them had. So
 // nothing is taken down then, as the documentation of DllMain asks for; the system takes everything back.
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
 #include <windows.h>
 
 extern "C" {
