@@ -81,6 +81,24 @@ namespace QuickSes.Tests
             Assert.That(_shown.HasUpload, Is.False);
         }
 
+        [Test]
+        public void AMeshThatIsDestroyedHalfPaintedIsNotWaitedFor([Values] bool isAskedFor)
+        {
+            AtomLook look = Take();
+            Upload();
+            look.SetColors(new[] { 1u }, 0);
+            Assert.That(_shown.Upload(new UploadShare(1, 1, _room), out _), Is.EqualTo(UploadStep.Unfinished));
+            UnityEngine.Object.DestroyImmediate(_shown.Mesh);
+            if (isAskedFor)
+                Assert.That(_shown.Mesh.vertexCount, Is.EqualTo(0));
+            for (int step = 0; step < 5 && _shown.HasUpload; ++step)
+                Upload();
+            Assert.That(_shown.HasUpload, Is.False);
+            Take();
+            Assert.That(Upload(), Is.EqualTo(UploadStep.Shown));
+            Assert.That(_shown.Mesh.vertexCount, Is.GreaterThan(0));
+        }
+
         // Of somebody who does not need the look any longer.
         private AtomLook Take(bool isMoving = false, Vector2? coordinates = null)
         {

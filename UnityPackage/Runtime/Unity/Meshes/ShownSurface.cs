@@ -55,15 +55,15 @@ namespace QuickSes
         public bool IsUploading =>
             (_upload.IsUnderWay && _isArrivalUploaded) || (_hasArrival && _isArrivalForGpu && _gpu.IsWaiting);
 
-        public bool HasUpload => (_hasArrival && !_isArrivalForGpu) || _upload.IsUnderWay || _painter.IsUnderWay ||
-            MustMove || MustPaint;
+        public bool HasUpload => (_hasArrival && !_isArrivalForGpu) || _upload.IsUnderWay || MustMove || MustPaint;
 
         // What is shown has to go into other buffers.
         private bool MustMove => MustLeaveGpu || (_front.IsFilled && (_isResting ||
             !_front.Style.Equals(StyleOf(_kept.View, _front.Look)) ||
             (!_front.Style.HasAtoms && _front.VisibleVersion != _front.Look.VisibleVersion)));
 
-        private bool MustPaint => _front.IsFilled && SurfacePainter.IsNeeded(_front);
+        // Not for a mesh that somebody destroys half painted.
+        private bool MustPaint => _front.IsFilled && (_painter.IsUnderWay || SurfacePainter.IsNeeded(_front));
 
         /// <summary>As of <see cref="ISurfaceHost.Take"/>.</summary>
         public void Take(SurfaceContext context, AtomLook look, bool isMoving)
@@ -90,7 +90,7 @@ namespace QuickSes
                     Begin(share);
                 if (_upload.IsUnderWay)
                     return Fill(share, ref bytes);
-                if (!MustPaint && !_painter.IsUnderWay)
+                if (!MustPaint)
                     return UploadStep.Painted;
                 if (_front.Writer.IsIntact(_front.Mesh))
                     return _painter.Step(_kept, _front, share, out bytes) ? UploadStep.Unfinished : UploadStep.Painted;
