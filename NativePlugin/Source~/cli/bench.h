@@ -21,6 +21,9 @@ struct BenchSubject {
   qses_backend backend;  // CUDA or CPU: what the options come to here
 };
 
+// Of all that is timed; meshes go to host memory.
+qses_settings bench_settings(const Options &options);
+
 // A context of its own, so that nothing is in its memory but what is measured, with the atoms.
 Engine start_engine(const BenchSubject &subject);
 

@@ -60,6 +60,14 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+qses_settings bench_settings(const Options &options) {
+  qses_settings settings = settings_of(options.compute);
+  settings.measure = options.bench.measure;
+  settings.vertex_layout = options.bench.layout;
+  settings.without_owners = options.bench.without_owners;
+  return settings;
+}
+
 Engine start_engine(const BenchSubject &subject) {
   Engine engine = start_engine(subject.options.compute, true);
   engine.set_atoms(subject.structure, subject.path);
@@ -101,7 +109,7 @@ std::string bench_small(const BenchSubject &subject, Json *entry) {
   if (share.memory != 0) share.memory = std::max<uint64_t>(1, share.memory / in_flight);
   EnginePool engines(share, std::vector<int>(in_flight, chosen_devices(share, 0).front()), [](Engine &) {});
   const std::vector<Window> windows = cut_windows(structure, options.bench.small);
-  const qses_settings settings = settings_of(options.compute);
+  const qses_settings settings = bench_settings(options);
   size_t fewest = windows.front().count, most = fewest;
   for (const Window &w : windows) {
     fewest = std::min(fewest, w.count);

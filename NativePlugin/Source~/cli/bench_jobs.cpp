@@ -71,7 +71,7 @@ Json summary(const std::vector<double> &times) {
 std::string bench_jobs(const BenchSubject &subject, Json *entry) {
   const auto &[structure, path, options, backend] = subject;
   Engine engine = start_engine(subject);
-  const qses_settings ladder = settings_of(options.compute);
+  const qses_settings ladder = bench_settings(options);
   qses_settings finest = ladder;
   finest.level_count = 0;
   Latencies found;

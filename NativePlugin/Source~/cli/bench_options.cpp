@@ -48,7 +48,7 @@ void check_bench(const Options &options, const std::function<bool(const char *)>
   if (bench.small > 0 && given("--copies"))
     throw Failure(kUsage, "--copies: --small cuts surfaces out of one molecule, and copies have the same ones");
   if (bench.jobs || bench.small > 0)
-    for (const char *flag : {"--delivery", "--layout", "--no-owners", "--measure", "--stages"})
+    for (const char *flag : {"--delivery", "--stages"})
       if (given(flag)) throw Failure(kUsage, std::string(flag) + ": not with --jobs and --small");
   const bool is_cpu = options.compute.backend == QSES_BACKEND_CPU;
   if (is_cpu && (bench.deliveries == Deliveries::kDevice || bench.deliveries == Deliveries::kBoth))

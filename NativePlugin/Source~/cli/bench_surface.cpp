@@ -12,15 +12,6 @@ namespace {
 // The first takes memory. The second takes another buffer for its mesh, since the first mesh is still the caller's.
 constexpr unsigned kWarmUps = 2;
 
-qses_settings bench_settings(const Options &options, qses_delivery delivery) {
-  qses_settings settings = settings_of(options.compute);
-  settings.measure = options.bench.measure;
-  settings.vertex_layout = options.bench.layout;
-  settings.without_owners = options.bench.without_owners;
-  settings.delivery = delivery;
-  return settings;
-}
-
 // Of the atoms in host memory. What was delivered is finished, also on the device.
 qses_mesh make_surface(Engine &engine, const io::Structure &structure, const qses_settings &settings) {
   engine.set_positions(structure);
@@ -48,7 +39,8 @@ struct Delivered {
 };
 
 Delivered deliver(const BenchSubject &subject, qses_delivery delivery) {
-  const qses_settings settings = bench_settings(subject.options, delivery);
+  qses_settings settings = bench_settings(subject.options);
+  settings.delivery = delivery;
   const unsigned repeat = subject.options.bench.repeat;
   Engine engine = start_engine(subject);
   Delivered found = {};

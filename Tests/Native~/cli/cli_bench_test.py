@@ -150,6 +150,13 @@ class Copies(BenchTest):
         self.assertEqual(entry["atoms"], 654)
         self.assertGreater(entry["jobs"]["ladder"]["median"], 0)
 
+    def test_jobs_and_small_surfaces_have_the_settings_of_the_others(self):
+        for mode in (("--jobs",), ("--small", "100")):
+            with self.subTest(mode=mode):
+                report = self.bench(CRAMBIN, "--repeat", "1", *mode, "--measure", "--layout", "compact", "--no-owners")
+                self.assertEqual(report["settings"]["layout"], "compact")
+                self.assertIs(report["settings"]["owners"], False)
+
 
 class Errors(BenchTest):
     def test_inputs(self):
@@ -164,7 +171,7 @@ class Errors(BenchTest):
 
     def test_what_does_not_go_together(self):
         for other in (("--jobs",), ("--small", "100")):
-            for flag in (("--delivery", "host"), ("--layout", "compact"), ("--stages",)):
+            for flag in (("--delivery", "host"), ("--stages",)):
                 with self.subTest(other=other, flag=flag):
                     self.assert_fails(USAGE, [flag[0], "--jobs", "--small"], "bench", CRAMBIN, *other, *flag)
         self.assert_fails(USAGE, ["--copies", "--small"], "bench", CRAMBIN, "--small", "100", "--copies", "2")
