@@ -109,8 +109,10 @@ namespace QuickSes.Tests
             SurfaceScheduler.UploadBudget = budget;
         }
 
-        // A sequence of its own for each: how many numbers are drawn in between is a matter of time.
-        private System.Random RandomOf(int step, int number) => new System.Random((_seed * 1000 + step) * 1000 + number);
+        // A sequence of its own for each: how many numbers are drawn in between is a matter of time. Seeds that are near
+        // each other begin alike.
+        private System.Random RandomOf(int step, int number) =>
+            new System.Random(unchecked(((_seed * 1000 + step) * 1000 + number) * 1640531527));
 
         private void Renew(int k, int step)
         {
