@@ -2,14 +2,17 @@
 using System;
 using System.Diagnostics;
 using System.IO;
+using System.Runtime.InteropServices;
 using System.Threading;
 
 namespace QuickSes.MonoRunner
 {
-    /// <summary>Ends the program, with its name, where a test goes on for longer than any does.</summary>
+    /// <summary>Ends the program where a test goes on for longer than any does: with its name, and where each thread is.</summary>
     internal sealed class HangGuard
     {
         private static readonly TimeSpan Limit = TimeSpan.FromMinutes(10);
+
+        private const int Quit = 3; // SIGQUIT
 
         private readonly TextWriter _output;
         private readonly Stopwatch _clock = new Stopwatch(); // locked, as the next one
@@ -36,6 +39,9 @@ namespace QuickSes.MonoRunner
                 _clock.Reset();
         }
 
+        [DllImport("libc")]
+        private static extern int kill(int process, int signal);
+
         private void Watch()
         {
             while (true)
@@ -46,6 +52,8 @@ namespace QuickSes.MonoRunner
                     if (_clock.Elapsed < Limit)
                         continue;
                     _output.WriteLine($"HANGS {_test}");
+                    kill(Process.GetCurrentProcess().Id, Quit); // Mono prints the stack of each thread
+                    Thread.Sleep(5000);
                     Process.GetCurrentProcess().Kill(); // what hangs may hold up an orderly end
                 }
             }
