@@ -99,6 +99,20 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void TimeThatPassesBeforeFramesAreThereDoesNotCount()
+        {
+            _playing.UseEnsemble(5);
+            Player.Play();
+            Assert.That(Player.Load(), Is.True);
+            _playing.TickUntil(() =>
+            {
+                Player.Tick(0.1f); // a frame's
+                return Player.ShownFrame >= 0;
+            }, "a frame is shown");
+            Assert.That(_playing.Shown, Is.EqualTo(new[] { 0 }));
+        }
+
+        [Test]
         public void LoopGoesRound()
         {
             LoadEnsemble(3);

@@ -208,8 +208,10 @@ namespace QuickSes
             TellAll();
             if (_load != null)
                 TickLoading();
-            else if (_prefetcher != null && (IsReady || TryGetReady()))
+            else if (IsReady)
                 TickFrames(seconds);
+            else if (_prefetcher != null && TryGetReady())
+                TickFrames(0);
         }
 
         // The way it is to go, which the inspector may have changed as well.
