@@ -75,6 +75,9 @@ namespace QuickSes.Tests
             _calls = _actsOfHandlers = 0;
             _isOver = false;
             _done.Clear();
+            bool isEditMode = seed % 2 == 0; // until the end
+            if (isEditMode)
+                Engine.EnterEditMode();
             for (int k = 0; k < Others; ++k)
                 _others[k] = new SurfaceRig("other " + k);
             for (int k = 0; k < Players; ++k)
@@ -91,6 +94,8 @@ namespace QuickSes.Tests
                     AssertIsSensible(player);
             }
             _isOver = true;
+            if (isEditMode)
+                Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
             for (int k = 0; k < Players; ++k)
                 _players[k].Unload();
             for (int k = 0; k < Players; ++k)
