@@ -5,7 +5,7 @@
 
 #include "parallel/arena.h"
 #include "process/host_memory.h"
-#include "surface/methods/size_check.h"
+#include "surface/methods/size_estimate.h"
 
 #include <gtest/gtest.h>
 
@@ -165,6 +165,70 @@ TEST(HopelessSpacing, AnotherIsNamedThatWouldDo) {
       const double named = std::stod(said.substr(about + 6));
       EXPECT_GT(named, spacing);
       EXPECT_EQ(refusal(named, available), "") << said;
+    }
+}
+
+// Two coarser meshes give a finer one exactly where the laws hold by which they are extrapolated.
+TEST(SizeEstimate, ExtrapolatesWhatItSaysItDoes) {
+  const auto size_at = [](double h) {
+    const double cells = 1 / (h * h);
+    return quickses::SurfaceSize{cells * (30 + 7 / h), cells * (900 - 80 * h), cells * (1800 + 50 * h),
+                                 cells * (90 + 20 * h)};
+  };
+  const quickses::SurfaceSize got = quickses::extrapolate(size_at(0.8), 0.8, size_at(1.6), 1.6, 0.1),
+                              expected = size_at(0.1);
+  EXPECT_NEAR(got.bricks / expected.bricks, 1, 1e-12);
+  EXPECT_NEAR(got.vertices / expected.vertices, 1, 1e-12);
+  EXPECT_NEAR(got.triangles / expected.triangles, 1, 1e-12);
+  EXPECT_NEAR(got.leaves / expected.leaves, 1, 1e-12);
+  // What falls so steeply that nothing would be left is nothing, not less.
+  EXPECT_EQ(quickses::extrapolate({0, 0, 0, 0}, 0.8, {0, 9, 9, 9}, 1.6, 0.1).vertices, 0.0);
+}
+
+// What is known stays; what is not gets a number, for few large balls none that they can't have.
+TEST(SizeEstimate, GuessesOnlyWhatIsNotKnown) {
+  quickses::SurfaceParameters parameters{};
+  parameters.probe = parameters.depth = 1.4f;
+  parameters.spacing = 0.5f;
+  parameters.max_radius = 3.2f;
+  quickses::WorkFacts known;
+  known.atoms = 1000;
+  known.caps = 11;
+  known.arcs = 12;
+  known.knows_arcs = true;
+  known.arc_length = 13;
+  known.spindle_turns = 14;
+  known.size = {15, 16, 17, 18};
+  quickses::WorkFacts facts = known;
+  quickses::guess_unknown(parameters, true, 1e6, &facts);
+  EXPECT_EQ(facts.caps, 11u);
+  EXPECT_EQ(facts.arcs, 12u);
+  EXPECT_EQ(facts.arc_length, 13);
+  EXPECT_EQ(facts.spindle_turns, 14);
+  EXPECT_EQ(facts.size.bricks, 15);
+  EXPECT_EQ(facts.size.vertices, 16);
+  EXPECT_EQ(facts.size.triangles, 17);
+  EXPECT_EQ(facts.size.leaves, 18);
+  facts.arcs = 0;  // there are none, and that is known
+  facts.arc_length = 0;
+  quickses::guess_unknown(parameters, true, 1e6, &facts);
+  EXPECT_EQ(facts.arcs, 0u);
+
+  for (const float radius : {3.2f, 30.f, 300.f})
+    for (const bool exact : {false, true}) {
+      parameters.max_radius = radius;
+      facts = {};
+      facts.atoms = 20;
+      quickses::guess_unknown(parameters, exact, 1e5, &facts);
+      EXPECT_GT(facts.arcs, 0u);
+      EXPECT_GT(facts.arc_length, 0);
+      EXPECT_GT(facts.size.bricks, 0);
+      EXPECT_LE(facts.size.bricks, 1e5) << "there are no more in the table";
+      EXPECT_GT(facts.size.vertices, 0);
+      EXPECT_EQ(facts.size.triangles, 2 * facts.size.vertices);
+      EXPECT_GT(facts.size.leaves, 0);
+      EXPECT_GE(facts.caps, 18u * 20u);
+      EXPECT_LE(facts.caps, 20u * (18u + 20u)) << "no atom has more neighbours than there are";
     }
 }
 

@@ -183,6 +183,21 @@ TEST(Estimate, LeavesTheLastMeshInPlace) {
   EXPECT_EQ(std::memcmp(after.positions, positions.data(), 4 * positions.size()), 0);
 }
 
+TEST(Estimate, CountsColors) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  const qses_size_estimate plain = estimate_of(context, settings(0.5));
+  const std::vector<uint8_t> colors(4 * atoms.size(), 200);
+  expect_ok(qses_set_colors(context, colors.data(), atoms.size()));
+  const qses_size_estimate colored = estimate_of(context, settings(0.5));
+  EXPECT_EQ(colored.vertices, plain.vertices);
+  EXPECT_GE(colored.mesh_bytes, plain.mesh_bytes + 4 * plain.vertices);
+  const qses_mesh mesh = compute_view(context, settings(0.5));
+  ASSERT_EQ(mesh.vertex_count, colored.vertices) << "so small a mesh is counted";
+  EXPECT_EQ(report_of(context).mesh_bytes, colored.mesh_bytes);
+}
+
 TEST(Estimate, OfNothingIsNothing) {
   const Context context;
   qses_size_estimate e;
