@@ -22,12 +22,12 @@ namespace {
 
 using namespace surface_checks;
 
-std::unique_ptr<quickses::SurfaceEngine> make_engine() {
+std::unique_ptr<quickses::SurfaceEngine> make_engine(uint64_t memory_budget = 0) {
   const quickses::WorkerThreads threads(2);
 #if defined(QUICKSES_HAS_CUDA)
-  if (tested_backend() == QSES_BACKEND_CUDA) return quickses::make_cuda_engine(0, threads, 0);
+  if (tested_backend() == QSES_BACKEND_CUDA) return quickses::make_cuda_engine(0, threads, memory_budget);
 #endif
-  return quickses::make_cpu_engine(threads, 0);
+  return quickses::make_cpu_engine(threads, memory_budget);
 }
 
 // Keeps all levels, and may stop the computation when so many of them are finished.
@@ -40,8 +40,11 @@ class Levels : public quickses::LevelSink {
   // Was more than one of them begun before the first was finished? Memory is given back before that.
   bool were_beside() const { return given_back_ > 1; }
 
-  void prepared(double) override {}
+  size_t times_prepared = 0, times_given_back = 0;
+
+  void prepared(double) override { ++times_prepared; }
   void give_back() override {
+    ++times_given_back;
     if (meshes.empty()) ++given_back_;
   }
   void finished(quickses::FinishedMesh mesh) override {
@@ -221,6 +224,91 @@ TEST_F(LadderLevels, MayBeGivenUpAtAnyMoment) {
     }
   }
   EXPECT_GT(cancelled, 20u);
+}
+
+// However often the plan was refused memory, each level comes once, and the next frame does no work twice.
+TEST(LadderLevelsWithABudget, AreHandedOutOnce) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "the budget is of the device";
+  const Atoms atoms = cluster(400, 5);
+  qses_settings s = settings(0.3);
+  const std::unique_ptr<quickses::SurfaceEngine> unbounded = make_engine();
+  const std::atomic<bool> stop{false};
+  const uint64_t smallest =
+      unbounded->estimate(*atoms_of(*unbounded, atoms), quickses::Appearance{}, s, stop).smallest_budget;
+  Alone alone;
+  uint64_t tried_again = 0;
+  for (const double factor : {1.0, 1.2, 1.5, 2.0}) {
+    SCOPED_TRACE(testing::Message() << factor << " of " << smallest << " bytes");
+    const auto engine = make_engine(static_cast<uint64_t>(factor * static_cast<double>(smallest)));
+    for (int frame = 0; frame < 2; ++frame) {
+      Levels levels;
+      compute(*engine, atoms, s, &levels);
+      ASSERT_EQ(levels.meshes.size(), 3u);
+      EXPECT_EQ(levels.times_prepared, 1u);
+      uint64_t attempts = 0;
+      for (const quickses::FinishedMesh &mesh : levels.meshes) {
+        EXPECT_GE(mesh.report.attempts, 1u);
+        attempts += mesh.report.attempts;
+        EXPECT_LE(mesh.report.work_bytes_peak, factor * static_cast<double>(smallest));
+      }
+      if (frame == 1) {
+        EXPECT_EQ(attempts, 3u) << "what did for the frame before does for this one";
+      }
+      EXPECT_GE(levels.times_given_back, 3u) << "before each level";
+      tried_again += attempts - 3;
+      if (alone.empty()) {
+        Levels apart;
+        compute(*unbounded, atoms, s, &apart);
+        alone = std::move(apart.meshes);
+      }
+      for (size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(levels.meshes[k].on_host.spacing, alone[k].on_host.spacing);
+        ASSERT_EQ(levels.meshes[k].on_host.vertex_count, alone[k].on_host.vertex_count);
+        expect_equal(levels.meshes[k].on_host.indices, alone[k].on_host.indices,
+                     3 * size_t(alone[k].on_host.triangle_count), "indices");
+      }
+    }
+  }
+  EXPECT_GT(tried_again, 0u) << "nothing was refused: nothing was tested";
+}
+
+TEST(LevelsOfSettings, AreThoseAboveTheSpacingAndTheSpacing) {
+  qses_settings s = settings(0.5);
+  s.level_count = 4;
+  const float levels[] = {4.f, 2.f, 0.5f, 0.25f};
+  std::copy(levels, levels + 4, s.levels);
+  quickses::Levels expected;
+  for (const float spacing : {4.f, 2.f, 0.5f}) expected.add(spacing);
+  EXPECT_TRUE(quickses::levels_of(s) == expected);
+  quickses::Levels other = expected;
+  other.spacings[1] = 3.f;
+  EXPECT_FALSE(other == expected);
+  other = expected;
+  other.add(0.25f);
+  EXPECT_FALSE(expected == other);
+  EXPECT_FALSE(other == expected);
+  s.level_count = 0;
+  EXPECT_EQ(quickses::levels_of(s).count, 1u);
+}
+
+// Spacings are rounded: one that is a multiple but for that divides all the same.
+TEST(LevelsOfSettings, HaveTheFrameOfTheCoarsestThatAllDivide) {
+  const auto frame = [](std::initializer_list<double> spacings) {
+    quickses::Levels levels;
+    for (const double spacing : spacings) levels.add(static_cast<float>(spacing));
+    return quickses::frame_spacing(levels);
+  };
+  for (const double fine : {0.5, 0.1, 0.3, 0.07, 0.013})
+    for (int times = 1; times <= 1000; ++times) {
+      const float coarse = static_cast<float>(times * fine);
+      ASSERT_EQ(frame({times * fine, fine}), coarse) << times << " times " << fine;
+      if (times < 300) {
+        ASSERT_EQ(frame({(times + 0.01) * fine, fine}), static_cast<float>(fine)) << times << " times " << fine;
+      }
+    }
+  EXPECT_EQ(frame({2, 1, 0.5}), 2.f);
+  EXPECT_EQ(frame({2, 0.8, 0.5}), 0.5f) << "one between does not divide";
+  EXPECT_EQ(frame({0.7}), 0.7f);
 }
 
 }  // namespace
