@@ -20,10 +20,9 @@ class LevelsUnderWay {
   LevelsUnderWay(const LevelsUnderWay &) = delete;
   LevelsUnderWay &operator=(const LevelsUnderWay &) = delete;
 
-  // The next one, which is about to begin.
+  // The next one, which is about to begin. Those before it have begun.
   template <class... Arguments>
   Level &add(Arguments &&...arguments) {
-    begun_ = last_;
     return levels_[last_++].emplace(std::forward<Arguments>(arguments)...);
   }
   void note_begun() { begun_ = last_; }
