@@ -39,7 +39,7 @@ inline SurfaceParameters parameters_of(const FrameInput &in) {
                    (s.surface == QSES_SURFACE_SES && s.method == QSES_METHOD_EXACT && s.probe_radius < kSmallestProbe);
   SurfaceParameters p{};
   p.probe = vdw ? 0.f : s.probe_radius;
-  p.depth = s.surface == QSES_SURFACE_SES && !vdw ? p.probe : 0.f;
+  p.depth = s.surface == QSES_SURFACE_SES ? p.probe : 0.f;
   p.spacing = s.spacing;
   if (s.surface == QSES_SURFACE_GAUSSIAN) {
     p.probe = 0.f;

@@ -11,10 +11,10 @@ namespace quickses {
 // The end that wants to be moved onto the crease: 0, 1, or -1 for neither.
 QSES_FN int end_to_snap(const CreasePoint &p) {
   if (p.kind != CreasePoint::kCrossed) return -1;
+  static_assert(kSnapPart < 0.5f, "a point is that near to one end at most");
   const float near = kSnapPart * (p.to_first + p.to_second);
-  const bool first = p.first_fits && p.to_first < near, second = p.second_fits && p.to_second < near;
-  if (first && (!second || p.to_first <= p.to_second)) return 0;
-  return second ? 1 : -1;
+  if (p.first_fits && p.to_first < near) return 0;
+  return p.second_fits && p.to_second < near ? 1 : -1;
 }
 
 // Where vertices are to be moved: to the nearest of the points that want them; of two as near, to that of the first
