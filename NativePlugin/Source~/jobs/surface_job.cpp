@@ -141,11 +141,14 @@ std::unique_lock<std::mutex> SurfaceJob::wait_for_turn() {
 
 void SurfaceJob::compute(SurfaceRequest request) {
   {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    state_.tag_requested = request.settings.tag;  // also if it is cancelled before its turn
+  }
+  {
     const std::unique_lock<std::mutex> lock = wait_for_turn();
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
     choose_levels(request);
-    state_.tag_requested = request.settings.tag;
     running_ = true;
   }
   const auto end = [&](qses_job_state state, qses_status status, const char *message) {

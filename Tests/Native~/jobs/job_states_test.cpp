@@ -3,6 +3,7 @@
 #include "jobs/jobs_fixture.h"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,32 @@ TEST(JobStates, CancelTakesBackWhatWaits) {
   EXPECT_EQ(p.state, QSES_JOB_CANCELLED);
   EXPECT_EQ(p.tag, 1u);
   EXPECT_EQ(p.mesh_ready, 0);
+}
+
+// Also a compute that is cancelled while it waits for a job was asked for.
+TEST(JobStates, AComputeThatNeverHasItsTurnWasRequested) {
+  Gate gate;
+  const Context context;
+  set_atoms(context, block(20));
+  gate.place_in(context);
+  begin(context, settings(0.5), 1);
+  gate.wait_until_reached();
+  std::atomic<bool> has_ended{false};
+  std::thread other([&] {
+    qses_settings s = settings(0.2);
+    s.tag = 2;
+    qses_compute(context, &s, nullptr);
+    has_ended = true;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));  // it waits by then, mostly
+  expect_ok(qses_cancel(context));
+  gate.open();
+  while (!has_ended) {
+    expect_ok(qses_cancel(context));
+    std::this_thread::yield();
+  }
+  other.join();
+  EXPECT_EQ(poll(context).tag_requested, 2u);
 }
 
 // Whatever is computed, a job that is finished is all done.
