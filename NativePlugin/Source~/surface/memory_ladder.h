@@ -307,15 +307,18 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
 
   // What is not known of the finest level, guessed.
   void guess_facts(const FrameInput &in) {
-    SurfaceParameters parameters = parameters_of(in);
-    Lattice lattice = center_lattice(in.atoms.bounds, frame_spacing(levels_of(in.settings)));
-    const glm::vec3 low = to_glm(lattice.from_caller(&in.atoms.bounds.low.x)),
-                    high = to_glm(lattice.from_caller(&in.atoms.bounds.high.x));
-    lattice.spacing = parameters.spacing;
-    lattice = layout_lattice(lattice, low, high, parameters.max_radius);
+    const SurfaceParameters parameters = parameters_of(in);
+    double most_bricks = 1;
+    if (makes_mesh(in)) {  // else no spacing is too fine
+      Lattice lattice = center_lattice(in.atoms.bounds, frame_spacing(levels_of(in.settings)));
+      const glm::vec3 low = to_glm(lattice.from_caller(&in.atoms.bounds.low.x)),
+                      high = to_glm(lattice.from_caller(&in.atoms.bounds.high.x));
+      lattice.spacing = parameters.spacing;
+      most_bricks = static_cast<double>(layout_lattice(lattice, low, high, parameters.max_radius).table_size());
+    }
     if (spacing_ != in.settings.spacing) facts_.size = {};  // those of a coarser level
     spacing_ = in.settings.spacing;
-    guess_unknown(parameters, is_exact(in.settings), static_cast<double>(lattice.table_size()), &facts_);
+    guess_unknown(parameters, is_exact(in.settings), most_bricks, &facts_);
   }
 
   // Of a first computation. The guess is generous: proteins take three quarters of it, or less.

@@ -352,4 +352,20 @@ TEST(AtomAreas, OfACollectedLevelStayWhileOthersAreMade) {
   }
 }
 
+// Where no mesh is made no spacing is too fine, so that memory is all that can be wanting.
+TEST(DeliveryNone, HasNoSpacingToBlame) {
+  Atoms atoms = cluster(3000, 1);
+  atoms.add(1e5, 0, 0, 1.5);
+  const Context context, tight(2, 1 << 18);
+  qses_settings s = settings(0.001, 1.4, QSES_SURFACE_VDW);
+  s.delivery = QSES_DELIVERY_NONE;
+  set_atoms(context, atoms);
+  set_atoms(tight, atoms);
+  qses_size_estimate estimate;
+  qses_size_estimate_init(&estimate);
+  expect_ok(qses_compute(context, &s, nullptr));
+  expect_error(qses_compute(tight, &s, nullptr), QSES_OUT_OF_MEMORY, {"budget"});
+  expect_error(qses_estimate(tight, &s, &estimate), QSES_OUT_OF_MEMORY, {"budget"});
+}
+
 }  // namespace
