@@ -208,8 +208,10 @@ class ContextModel {
     is_settled_ = true;
   }
 
-  // A job that another one may follow is held at its begin, is cancelled perhaps, and goes on.
-  void pass_barrier(const qses_settings &first, const qses_settings *second, bool is_cancelled) {
+  enum class Cancel { kNever, kFirst, kAll };
+
+  // A job is held at its begin, another one may follow, and it goes on. Cancelled are none, the first, or all of them.
+  void pass_barrier(const qses_settings &first, const qses_settings *second, Cancel cancelled) {
     disturb_no_more();
     expect(qses_set_progress_callback(context_, Barrier::pass, &barrier_), QSES_OK);
     is_settled_ = true;
@@ -219,19 +221,20 @@ class ContextModel {
     const uint32_t held_tag = newest_;
     while (!barrier_.is_reached && jobs_fixture::poll(context_).state == QSES_JOB_RUNNING) std::this_thread::yield();
     const bool is_held = barrier_.is_reached;
+    if (cancelled == Cancel::kFirst) cancel();
     if (second) begin(*second, true);
     if (is_held) {
       const qses_progress p = jobs_fixture::poll(context_);
       EXPECT_EQ(p.state, QSES_JOB_RUNNING);
       EXPECT_EQ(p.tag, held_tag);
       EXPECT_EQ(p.tag_requested, newest_);
-      if (second && is_cancelled) requests_.at(newest_).is_dropped = true;
+      if (second && cancelled == Cancel::kAll) requests_.at(newest_).is_dropped = true;
     }
-    if (is_cancelled) cancel();
+    if (cancelled == Cancel::kAll) cancel();
     barrier_.is_shut = false;
     expect(qses_set_progress_callback(context_, nullptr, nullptr), QSES_OK);
     is_settled_ = true;
-    if (is_held && is_cancelled) {
+    if (is_held && is_cancelled_) {
       const qses_progress p = jobs_fixture::poll(context_);
       EXPECT_EQ(p.tag, held_tag);
       EXPECT_TRUE(p.state == QSES_JOB_CANCELLED || p.state == QSES_JOB_FAILED) << p.state;
