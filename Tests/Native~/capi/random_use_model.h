@@ -114,6 +114,7 @@ class ContextModel {
     if (expected != QSES_OK) return;
     is_settled_ = false;
     ask_for(s, true);
+    check_progress();
   }
 
   void compute(qses_settings s, bool is_good, bool wants_mesh) {

@@ -98,10 +98,15 @@ class Sequence {
 
   void set_atoms(ContextModel &context) {
     Frame frame;
-    frame.is_wide = random_.chance(0.06);
+    frame.is_wide = random_.chance(0.1);
     frame.atoms = random_atoms(random_);
+    const bool is_as_many = random_.chance(0.3);
     if (frame.is_wide) frame.atoms = wide_atoms();
-    const bool is_spoilt = random_.chance(0.15) && frame.atoms.size() > 0;
+    if (is_as_many && !frame.is_wide && context.frame()) {
+      frame = *context.frame();
+      for (float &r : frame.atoms.radii) r = static_cast<float>(random_.uniform(1, 2));
+    }
+    const bool is_spoilt = random_.chance(0.25) && frame.atoms.size() > 0;
     note("set_atoms, " + std::to_string(frame.atoms.size()) + (is_spoilt ? ", not allowed" : ""));
     if (is_spoilt) spoil(&frame.atoms, random_);
     const Atoms &a = frame.atoms;
