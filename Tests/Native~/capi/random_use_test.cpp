@@ -11,6 +11,12 @@ using namespace random_use;
 
 namespace {
 
+#ifdef QUICKSES_PROPERTY_DEFAULT_SETS  // of builds with sanitizers, which are slow
+constexpr uint64_t kDefaultSets = QUICKSES_PROPERTY_DEFAULT_SETS;
+#else
+constexpr uint64_t kDefaultSets = 100;
+#endif
+
 uint64_t number_from_environment(const char *name, uint64_t otherwise) {
   const char *text = std::getenv(name);
   return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
@@ -319,7 +325,7 @@ class Sequence {
 
 TEST(RandomUse, KeepsToTheHeader) {
   const uint64_t first = number_from_environment("QUICKSES_PROPERTY_SEED", 1),
-                 sets = number_from_environment("QUICKSES_PROPERTY_SETS", 100),
+                 sets = number_from_environment("QUICKSES_PROPERTY_SETS", kDefaultSets),
                  calls = number_from_environment("QUICKSES_PROPERTY_CALLS", 60);
   for (uint64_t seed = first; seed < first + sets && !HasFailure(); ++seed) {
     Sequence sequence(seed);
