@@ -125,7 +125,7 @@ class Request {
     if (mesh.level_count != finest() + 1) return "level_count";
     if (mesh.level < finest()) {
       // Levels before one that is too fine are so small a part of the job that it may not tell of them one by one.
-      if (status() != QSES_OK) return "";
+      if (settings.spacing < 0.01f) return "";
       if (coarser_.empty()) make_coarser();
       if (!coarser_[mesh.level]) return "a level that is never there";
       return mesh.difference(*coarser_[mesh.level]);
