@@ -59,7 +59,7 @@ class Snapshot {
     add("has_texcoords", &m.has_texcoords, 4);
     add("report.area", &r.area, 8);
     add("report.volume", &r.volume, 8);
-    add("report.mesh_bytes", &r.mesh_bytes, 8);
+    add("report.mesh_bytes", m.owners ? &r.mesh_bytes : nullptr, 8);  // else a matter of how it was made
     add("report.hidden_vertices", &r.hidden_vertices, 4);
     add("report.hidden_triangles", &r.hidden_triangles, 4);
     add("report.triangle_area", &r.triangle_area, 8);

@@ -558,7 +558,8 @@ typedef struct qses_report {
   double compute_ms;        /* atoms in host memory to mesh in host memory; for a later level: since the one before */
   uint64_t work_bytes_peak; /* most memory in use for the work: on the device with CUDA, else in host memory,
                                without the mesh */
-  uint64_t mesh_bytes;      /* of the mesh itself, without its components; with settings.delivery NONE 0 */
+  uint64_t mesh_bytes;      /* memory of the mesh itself, without its components; with settings.delivery NONE 0. On the
+                               CPU, and where it leaves a GPU in pieces, owners take theirs without_owners, too */
   uint64_t host_bytes_peak; /* host memory of the context, the mesh included, and what is kept of its meshes */
   uint64_t brick_count;     /* bricks of 8x8x8 lattice points that were evaluated */
   uint64_t slice_count;     /* parts it was made in: of little memory several, and of a large mesh that leaves the GPU
