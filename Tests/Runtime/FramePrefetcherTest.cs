@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System;
 using System.Collections.Generic;
+using System.Diagnostics;
 using System.Linq;
 using System.Threading;
 using UnityEngine;
@@ -250,6 +251,40 @@ namespace QuickSes.Tests
                 AssertShows(prefetcher, 2);
             }
             WaitUntil(() => reader.IsDisposed, "the reader is given back");
+        }
+
+        // The thread plans without the lock: by the time it has a slot for another frame, that slot may be wanted.
+        [Test]
+        public void FramesThatAreWantedStayWhatTheyAre()
+        {
+            var random = new System.Random(1);
+            using (var prefetcher = new FramePrefetcher(new CountingReader(100, 64), 4))
+            {
+                WaitUntilOpen(prefetcher);
+                int seen = 0, others = 0;
+                Stopwatch waited = Stopwatch.StartNew();
+                while (seen < 20000)
+                {
+                    int frame = 10 * random.Next(3);
+                    prefetcher.Request(Order(100, frame));
+                    if (prefetcher.Get(frame, out ReadOnlySpan<Vector3> positions, out _, out _) == FrameState.Ready)
+                    {
+                        ++seen;
+                        for (int look = 0; look < 3; ++look)
+                        {
+                            Thread.SpinWait(20); // for as long as it might be read into
+                            foreach (Vector3 position in positions)
+                                others += position.x == frame ? 0 : 1;
+                        }
+                    }
+                    else
+                    {
+                        Thread.Yield();
+                    }
+                    Assert.That(waited.Elapsed.TotalSeconds, Is.LessThan(SurfaceRig.Patience), "still waiting");
+                }
+                Assert.That(others, Is.EqualTo(0));
+            }
         }
 
         // Its reader waits at the gate, and a timer would open it if somebody waited for that.
