@@ -7,6 +7,9 @@ namespace QuickSes.Tests
     /// <summary>Small molecules, made of numbers that are the same in every run.</summary>
     internal static class TestMolecules
     {
+        /// <summary>Of a number; those of numbers that are near each other do not begin alike.</summary>
+        public static System.Random RandomOf(int number) => new System.Random(unchecked(number * 1640531527));
+
         /// <summary>Atoms at random in a cube of such an edge that they overlap as those of a protein do.</summary>
         public static void Blob(int count, int seed, out Vector3[] positions, out float[] radii)
         {

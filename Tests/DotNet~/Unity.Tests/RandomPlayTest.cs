@@ -38,7 +38,7 @@ namespace QuickSes.Tests
         private readonly List<Film> _films = new List<Film>();
         private readonly List<string> _done = new List<string>();
         private TestFolder _folder;
-        private int _seed, _calls, _actsOfHandlers;
+        private int _seed, _calls, _actsOfHandlers, _actsBefore, _lastFrame = -1;
         private bool _isOver;
 
         [SetUp]
@@ -120,8 +120,7 @@ namespace QuickSes.Tests
             player.Failed += (frame, error) => Answer(k);
         }
 
-        // Seeds that are near each other begin alike.
-        private System.Random RandomOf(int number) => new System.Random(unchecked((100000 * _seed + number) * 1640531527));
+        private System.Random RandomOf(int number) => TestMolecules.RandomOf(100000 * _seed + number);
 
         // Handlers may do anything, too.
         private void Answer(int k)
@@ -166,8 +165,6 @@ namespace QuickSes.Tests
                 if (other.Surface.Player == player && other.Surface.AtomCount == own.AtomCount)
                     AssertAt(other.Surface, FramesApart * number + place);
         }
-
-        private int _lastFrame = -1, _actsBefore;
 
         private static void AssertAt(MolecularSurface surface, double place)
         {

@@ -109,10 +109,9 @@ namespace QuickSes.Tests
             SurfaceScheduler.UploadBudget = budget;
         }
 
-        // A sequence of its own for each: how many numbers are drawn in between is a matter of time. Seeds that are near
-        // each other begin alike.
+        // A sequence of its own for each: how many numbers are drawn in between is a matter of time.
         private System.Random RandomOf(int step, int number) =>
-            new System.Random(unchecked(((_seed * 1000 + step) * 1000 + number) * 1640531527));
+            TestMolecules.RandomOf(unchecked((_seed * 1000 + step) * 1000 + number));
 
         private void Renew(int k, int step)
         {

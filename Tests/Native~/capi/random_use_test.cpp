@@ -17,11 +17,6 @@ constexpr uint64_t kDefaultSets = QUICKSES_PROPERTY_DEFAULT_SETS;
 constexpr uint64_t kDefaultSets = 100;
 #endif
 
-uint64_t number_from_environment(const char *name, uint64_t otherwise) {
-  const char *text = std::getenv(name);
-  return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
-
 class Sequence {
  public:
   explicit Sequence(uint64_t seed) : random_(seed) {
@@ -324,9 +319,9 @@ class Sequence {
 };
 
 TEST(RandomUse, KeepsToTheHeader) {
-  const uint64_t first = number_from_environment("QUICKSES_PROPERTY_SEED", 1),
-                 sets = number_from_environment("QUICKSES_PROPERTY_SETS", kDefaultSets),
-                 calls = number_from_environment("QUICKSES_PROPERTY_CALLS", 60);
+  const uint64_t first = properties::number_from_environment("QUICKSES_PROPERTY_SEED", 1),
+                 sets = properties::number_from_environment("QUICKSES_PROPERTY_SETS", kDefaultSets),
+                 calls = properties::number_from_environment("QUICKSES_PROPERTY_CALLS", 60);
   for (uint64_t seed = first; seed < first + sets && !HasFailure(); ++seed) {
     Sequence sequence(seed);
     try {

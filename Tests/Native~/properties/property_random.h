@@ -6,12 +6,19 @@
 #include "surface/exact_reference.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 
 namespace properties {
 
 using exact_reference::Point;
+
+// How many, and where to begin, for those who want more than the tests do by themselves.
+inline uint64_t number_from_environment(const char *name, uint64_t otherwise) {
+  const char *text = std::getenv(name);
+  return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
 
 class Random {
  public:

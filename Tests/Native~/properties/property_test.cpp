@@ -22,11 +22,6 @@ constexpr uint64_t kDefaultSets = QUICKSES_PROPERTY_DEFAULT_SETS;
 constexpr uint64_t kDefaultSets = 2000;
 #endif
 
-uint64_t number_from_environment(const char *name, uint64_t otherwise) {
-  const char *text = std::getenv(name);
-  return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
-
 Runner &runner() {
   static Runner runner(static_cast<unsigned>(number_from_environment("QUICKSES_PROPERTY_PROCESSES", 1)));
   return runner;

@@ -7,7 +7,9 @@ using System.Threading;
 
 namespace QuickSes.MonoRunner
 {
-    /// <summary>Ends the program where a test goes on for longer than any does: with its name, and where each thread is.</summary>
+    /// <summary>
+    /// Ends the program where a test goes on for longer than any does: with its name, and where each thread is.
+    /// </summary>
     internal sealed class HangGuard
     {
         private static readonly TimeSpan Limit = TimeSpan.FromMinutes(10);
