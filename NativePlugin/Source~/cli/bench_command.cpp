@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdio>
 #include <future>
-#include <thread>
 #include <utility>
 
 #include "cli/bench.h"
@@ -13,6 +12,7 @@
 #include "cli/engine_pool.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
+#include "cli/processes.h"
 #include "cli/text_output.h"
 #include "io/text.h"
 
@@ -101,8 +101,7 @@ void compute_windows(EnginePool &engines, unsigned in_flight, const io::Structur
 
 std::string bench_small(const BenchSubject &subject, Json *entry) {
   const auto &[structure, path, options, backend] = subject;
-  const unsigned threads =
-      options.compute.threads ? options.compute.threads : std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads = options.compute.threads ? options.compute.threads : Processes().threads();
   const unsigned in_flight = backend == QSES_BACKEND_CUDA ? std::clamp(threads, 2u, kMostInFlight) : threads;
   ComputeOptions share = options.compute;
   share.threads = std::max(1u, threads / in_flight);

@@ -8,10 +8,10 @@
 #include <cstring>
 #include <iterator>
 #include <numeric>
-#include <thread>
 
 #include "cli/exit_code.h"
 #include "cli/mesh_check.h"
+#include "cli/processes.h"
 #include "cli/shown_output.h"
 #include "io/atomic_file.h"
 #include "io/color_borders.h"
@@ -95,7 +95,7 @@ std::string title_of(const std::string &input) {
 // Frames are drawn beside each other.
 unsigned drawing_threads(const Options &options) {
   if (!options.trajectories.empty()) return 1;
-  return options.compute.threads ? options.compute.threads : std::max(1u, std::thread::hardware_concurrency());
+  return options.compute.threads ? options.compute.threads : Processes().threads();
 }
 
 }  // namespace

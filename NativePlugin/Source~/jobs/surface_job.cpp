@@ -131,21 +131,17 @@ void SurfaceJob::run(const SurfaceRequest &request) {
     chooser_->record(std::chrono::duration<double, std::milli>(Clock::now() - start).count(), shared_ms_, mesh_bytes_);
 }
 
-std::unique_lock<std::mutex> SurfaceJob::wait_for_turn() {
-  std::unique_lock<std::mutex> lock(mutex_);
+void SurfaceJob::wait_for_turn(std::unique_lock<std::mutex> &lock) {
   cancelled_call_ = false;
   changed_.wait(lock, [&] { return !running_ && waiting_.empty(); });
   if (cancelled_call_) throw Cancelled{};
-  return lock;
 }
 
 void SurfaceJob::compute(SurfaceRequest request) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     state_.tag_requested = request.settings.tag;  // also if it is cancelled before its turn
-  }
-  {
-    const std::unique_lock<std::mutex> lock = wait_for_turn();
+    wait_for_turn(lock);
     // No worker runs and only this thread can begin one: it is safe to compute here.
     announce(request);
     choose_levels(request);
@@ -174,7 +170,8 @@ void SurfaceJob::compute(SurfaceRequest request) {
 
 qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
   {
-    const std::unique_lock<std::mutex> lock = wait_for_turn();
+    std::unique_lock<std::mutex> lock(mutex_);
+    wait_for_turn(lock);
     stop_now_ = false;
   }
   return engine_->estimate(*request.atoms, *request.appearance, request.settings, stop_now_);

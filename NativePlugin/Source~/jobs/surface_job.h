@@ -69,8 +69,8 @@ class SurfaceJob : private LevelSink {
   const std::atomic<bool> &stop_flag() const override { return stop_now_; }
   void advance(double fraction) override;
 
-  // Waits until no job runs, with the mutex held again; throws if that was cancelled meanwhile.
-  std::unique_lock<std::mutex> wait_for_turn();
+  // Waits until no job runs, with the mutex held before and behind; throws if that was cancelled meanwhile.
+  void wait_for_turn(std::unique_lock<std::mutex> &lock);
   // The mesh that is ready takes the place of the one that is held. The mutex is held.
   void hold_what_is_ready();
   // The state of a job that is about to run. The mutex is held.
