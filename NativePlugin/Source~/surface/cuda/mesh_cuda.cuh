@@ -80,12 +80,12 @@ void emit_triangles(E &executor, const BrickSet &bricks, const MeshLayout &layou
                   TriangleJob{bricks, layout, table, mesh, slice});
 }
 
-// Both side by side, where few leaves leave a GPU idle, or have long lists: the first blocks take bricks, the others
-// leaves, a warp for each.
+// Both side by side, where few leaves leave a GPU idle, or have very long lists: the first blocks take bricks, the
+// others leaves, a warp for each.
 template <class E>
 bool pay_side_by_side(const E &executor, const VertexJob &job, size_t leaves) {
   constexpr size_t kFew = 64;  // of a multiprocessor
-  return leaves <= executor.multiprocessors() * kFew || job.list_words >= kLongList;
+  return leaves <= executor.multiprocessors() * kFew || job.list_words >= 2 * kLongList;
 }
 static __global__ __launch_bounds__(kLeafWarps *kWarp,
                                     blocks_at_once(kLeafWarps *kWarp,
