@@ -17,10 +17,12 @@ if(QUICKSES_SANITIZE)
   set(_sanitize "-fsanitize=${QUICKSES_SANITIZE};-fno-omit-frame-pointer")
   if(QUICKSES_SANITIZE MATCHES "undefined")
     # Thrust 1.17 binds references to null on purpose; what reads through one still ends in the address sanitizer.
-    # So do we: what only counts memory (CountingExecutor) adds numbers to null, which Clang's sanitizer alone tells.
     # What Tests/Native~/ubsan.supp names can be passed over only if it is not fatal at once; the tests make it so.
-    list(APPEND _sanitize -fno-sanitize-recover=undefined -fsanitize-recover=shift-base
-      -fno-sanitize=null,object-size,pointer-overflow)
+    list(APPEND _sanitize -fno-sanitize-recover=undefined -fsanitize-recover=shift-base -fno-sanitize=null)
+    if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      # It tells of those references by other checks, too, and of numbers added to null: CountingExecutor counts so.
+      list(APPEND _sanitize -fno-sanitize=object-size,pointer-overflow)
+    endif()
   endif()
   target_compile_options(quickses_options INTERFACE "$<$<COMPILE_LANGUAGE:C,CXX>:${_sanitize}>")
   target_link_options(quickses_options INTERFACE "-fsanitize=${QUICKSES_SANITIZE}")

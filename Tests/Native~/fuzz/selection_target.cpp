@@ -26,7 +26,6 @@ qses_structure *open_structure() {
   qses_structure_options options;
   qses_structure_options_init(&options);
   options.format = QSES_STRUCTURE_PDB;
-  options.altloc = nullptr;
   options.selection = "altloc A B or all";
   qses_structure *structure = nullptr;
   require(succeeds(qses_structure_open_memory(kStructure, std::strlen(kStructure), &options, &structure), {}),

@@ -3,7 +3,6 @@
 #include "fuzz/fuzz.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
