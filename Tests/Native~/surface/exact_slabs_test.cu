@@ -114,6 +114,23 @@ TEST(ExactSlabs, AreTheMeshByteForByte) {
   }
 }
 
+// Where spacings are wide, leaves have rows of their own: the same, ten times as large.
+TEST(ExactSlabs, MayHaveRowsOfLeaves) {
+  REQUIRE_DEVICE();
+  Atoms atoms = scaled(rod(2), 10);
+  for (float &radius : atoms.radii) radius *= 10;
+  qses_settings s = fine_settings();
+  s.spacing *= 10;
+  s.probe_radius *= 10;
+  const Context context;
+  const Frame first = frame_of(context, atoms, s);
+  for (int frame = 1; frame < 4; ++frame) {
+    const Frame next = frame_of(context, atoms, s);
+    expect_same(next, first);
+    EXPECT_GT(next.report.slice_count, 1u);
+  }
+}
+
 // A quarter of the bricks is full of small balls, the others have a smooth surface through them: two or three times as
 // many vertices in some slabs as in others, so that there is too little room for them at first.
 TEST(ExactSlabs, MayBeUnevenlyFull) {

@@ -95,6 +95,22 @@ TEST(FollowingFrames, WithMoreBricksButNotMoreVertices) {
   expect_each_as_by_itself(frames, settings());
 }
 
+// As many triangles, but four times as many in the first bricks, or a fourth: those that a GPU has sent by then.
+TEST(FollowingFrames, WithMoreOrLessInTheFirstBricks) {
+  const auto full_at = [](bool the_end) {
+    Atoms atoms;
+    for (int layer = 0; layer < 24; ++layer) {
+      const bool is_full = layer < 3;
+      for (int k = 0; k < 100; k += is_full ? 1 : 4)
+        atoms.add(6 * (k % 10), 6 * (k / 10), 6 * (the_end ? 23 - layer : layer), 1.7);
+    }
+    return atoms;
+  };
+  std::vector<Atoms> frames;
+  for (bool the_end : {false, false, true, true, false, false, true}) frames.push_back(full_at(the_end));
+  expect_each_as_by_itself(frames, settings());
+}
+
 // A circle around two large balls that many small ones cut: on the GPU its intervals are in memory.
 TEST(FollowingFrames, WithCirclesInManyPieces) {
   Atoms atoms;

@@ -44,11 +44,10 @@ struct Backend<CpuKernelExecutor> {
                              const TableView &table, const MeshView &mesh) {
     if constexpr (!E::kCounts) quickses::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
-  template <class E, class TrianglesMade>
-  static void emit_mesh(E &executor, const Slice &s, const VertexWork &v, const TableView &table,
-                        const TrianglesMade &triangles_made) {
-    emit_triangles(executor, s.bricks, v.layout, s.slice, table, v.mesh);
-    triangles_made();
+  template <class E, class TrianglesMade, class EmitApart>
+  static void emit_mesh(E &executor, const Slice &s, const VertexWork &v, const TableView &, const TrianglesMade &,
+                        const EmitApart &emit_apart) {
+    emit_apart();
     emit_vertices(executor, s, v);
   }
   template <class E, class Slices>

@@ -53,7 +53,7 @@ class MeshMemory<CpuKernelExecutor> {
 
   void deliver_to(const qses_settings &) { forget_mesh(); }
   void note_triangles(CpuKernelExecutor &) {}
-  void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
+  void bring_triangles(const MeshMemoryView &, MeshPurpose, size_t) {}
   void bring_vertices(CpuKernelExecutor &, const MeshMemoryView &) {}
   // A mesh that is complete gets memory for all that goes out with it.
   void send(MeshMemoryView *built) { mesh_.own_numbers(built); }

@@ -7,6 +7,8 @@
 #include "parallel/cuda_warp.cuh"
 #include "surface/stages/hot_stages.h"
 
+#include <algorithm>
+
 namespace quickses {
 namespace gpu {
 
@@ -60,13 +62,13 @@ constexpr size_t kSpareCandidates = 1024;
 
 // Rows of a brick or a leaf: runs in the lists of atoms and arcs.
 struct CandidateRow {
-  unsigned long long first_atom, first_arc;
+  const uint32_t *atoms, *arcs;
   uint32_t atom_count, arc_count;
 };
 
 // From such a spacing on, Å, a leaf is so wide that it has rows of its own, chosen from those of its brick: of two or
 // three thousand atoms and arcs around a brick, a third is near a leaf.
-constexpr float kSpacingOfLeafRows = 1.2f;
+inline bool have_leaf_rows(const SurfaceParameters &parameters) { return parameters.spacing >= 1.2f; }
 
 // Rows that are longer than this are told of.
 constexpr uint32_t kUsualRow = 192;
@@ -83,25 +85,32 @@ struct CandidateCounters {
   }
 };
 
-// The lists for a slice of bricks, as kernels see them.
+// The lists for a run of bricks, as kernels see them. It may be gathered part by part: rows and bits are those of all
+// parts, the lists those of the last one.
 struct CandidateView {
   uint32_t first_brick, bricks;
-  CandidateRow *rows;  // of the bricks of the slice, or of their leaves
-  int row_shift;       // a leaf's is rows[slot >> row_shift], where slot is 8 * brick of the slice + leaf
+  CandidateRow *rows;     // of the bricks, or of their leaves
+  int row_shift;          // a leaf's is rows[slot >> row_shift], where slot is 8 * brick of the run + leaf
+  uint8_t *brick_leaves;  // per brick, a bit per leaf: the surface may pass between its points
   uint32_t *atoms;
   uint32_t *arcs;
-  uint8_t *arc_leaves;    // per entry of arcs: bit set = can be within depth of a point of that leaf
-  uint32_t *leaf_list;    // leaves between whose points the surface may pass: 8 * brick of the slice + leaf
-  uint8_t *brick_leaves;  // the same per brick: a bit per leaf
+  uint8_t *arc_leaves;  // per entry of arcs: bit set = can be within depth of a point of that leaf
+  uint32_t *leaf_list;  // slots of the leaves between whose points the surface may pass
   const CandidateCounters *counted;
-  unsigned long long leaf_room;  // so many leaves are evaluated: if there are more, all will be done again
-  uint32_t *deciders;  // by 64 * (8 * brick + leaf) + bit, of those leaves: what a sign is from; nullptr: not kept
+  // What the signs of the points of those leaves are from; nullptr: not kept. Of the bricks decided, which may be fewer
+  // than all: later ones take the place of the first.
+  uint32_t *deciders;
+  uint32_t decider_mask;
+  BrickRange decided;
 
-  // brick: of the set; one of the slice.
+  // brick: of the set; one of the run.
   __device__ __forceinline__ uint32_t slot_of(uint32_t brick, int leaf) const {
     return (brick - first_brick) * kLeavesPerBrick + static_cast<uint32_t>(leaf);
   }
   __device__ __forceinline__ CandidateRow row_of(uint32_t slot) const { return rows[slot >> row_shift]; }
+  __device__ __forceinline__ uint32_t *deciders_of(uint32_t slot) const {
+    return deciders + size_t(slot & decider_mask) * 64;
+  }
 };
 constexpr int kRowOfBrick = 3, kRowOfLeaf = 0;  // row_shift
 static_assert(1 << kRowOfBrick == kLeavesPerBrick, "a brick's leaves share its row");
@@ -122,18 +131,46 @@ __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int l
 
 // What the stages of a slice share: rows of atoms and arcs, and its active leaves.
 struct CudaCandidates {
-  BrickRange slice{0, 0};  // the bricks they are for; empty: not gathered yet
+  BrickRange gathered{0, 0};
   gpu::CandidateView view{};
-  bool have_deciders = false;
-  Span<uint32_t> decider_room{};  // for them; none: it is allocated
-  Span<uint32_t> vertex_room{};   // for vertices (vertex_words); none: it is allocated
-  size_t leaves = 0;
-  uint32_t longest_row = 0;  // of atoms or arcs, at most
+  gpu::CandidateRow *brick_rows = nullptr, *leaf_rows = nullptr;
+  Span<uint32_t> decider_room{};
+  Span<uint32_t> vertex_room{};  // for vertices (vertex_words); none: it is allocated
+  size_t leaves = 0;             // of the part that was gathered last
+  uint32_t longest_row = 0;      // of atoms or arcs, at most
+
+  // Room for the rows of bricks that are gathered at once, or part by part, each part behind the one before.
+  template <class E>
+  void open(E &executor, const SurfaceParameters &parameters, BrickRange bricks) {
+    view.first_brick = bricks.first;
+    view.bricks = bricks.size();
+    brick_rows = executor.template allocate<gpu::CandidateRow>(bricks.size()).data;
+    view.brick_leaves = executor.template allocate<uint8_t>(bricks.size()).data;
+    if (gpu::have_leaf_rows(parameters))
+      leaf_rows = executor.template allocate<gpu::CandidateRow>(size_t(bricks.size()) * kLeavesPerBrick).data;
+  }
+  // Room for what decides about points, of so many bricks at a time at least.
+  template <class E>
+  void keep_deciders(E &executor, uint32_t bricks) {
+    uint32_t room = 1;
+    while (room < bricks) room *= 2;
+    view.decider_mask = room < view.bricks ? room * kLeavesPerBrick - 1 : ~uint32_t(0);
+    decider_room = executor.template allocate<uint32_t>(size_t(std::min(room, view.bricks)) * kBrickPoints);
+    view.deciders = decider_room.data;
+  }
   // Words that placing vertices takes, of leaves that own some.
   static size_t vertex_words(const SurfaceParameters &parameters, size_t vertices, size_t leaves) {
     return 4 * vertices + leaves * gpu::leaf_list_words(parameters);
   }
-  bool are_of(BrickRange r) const { return slice.first == r.first && slice.last == r.last; }
+  // Those of the part that was gathered last are about to be found.
+  template <class E>
+  void decide(E &executor, BrickRange part) {
+    if (decider_room.size == 0) keep_deciders(executor, view.bricks);
+    const uint32_t last = part.last - view.first_brick, room = static_cast<uint32_t>(decider_room.size / kBrickPoints);
+    view.decided = {view.first_brick + (last > room ? last - room : 0), part.last};
+  }
+  bool have(BrickRange r) const { return gathered.size() > 0 && gathered.first <= r.first && r.last <= gathered.last; }
+  bool have_deciders() const { return view.decided.size() > 0; }
   // Steps of a thread that looks at all atoms and arcs of a row, and at an atom's caps.
   uint64_t look_steps(const FeatureView &features) const { return 64 + 2 * uint64_t(longest_row) + features.most_caps; }
 };

@@ -36,7 +36,7 @@ struct Backend<CudaExecutor> {
   template <class E>
   static void evaluate_signs(E &executor, const Slice &s, uint64_t *signs) {
     if (s.slice.size() == 0) return;
-    const bool are_shared = s.candidates.are_of(s.slice);
+    const bool are_shared = s.candidates.have(s.slice);
     if (!are_shared) gpu::gather_candidates(executor, s, signs);
     gpu::evaluate_leaves(executor, s, are_shared && s.features.parameters.has_thin_walls(), signs);
   }
@@ -53,10 +53,10 @@ struct Backend<CudaExecutor> {
                              const TableView &table, const MeshView &mesh) {
     gpu::emit_triangles(executor, bricks, layout, slice, table, mesh);
   }
-  template <class E, class TrianglesMade>
+  template <class E, class TrianglesMade, class EmitApart>
   static void emit_mesh(E &executor, const Slice &s, const VertexWork &v, const TableView &table,
-                        const TrianglesMade &triangles_made) {
-    gpu::emit_mesh(executor, s, v, table, triangles_made);
+                        const TrianglesMade &triangles_made, const EmitApart &emit_apart) {
+    gpu::emit_mesh(executor, s, v, table, triangles_made, emit_apart);
   }
   template <class E, class Slices>
   static void evaluate_density(E &executor, const GaussianDensity &density, const BrickSet &bricks,

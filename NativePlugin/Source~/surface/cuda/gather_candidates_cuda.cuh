@@ -17,6 +17,7 @@ namespace gpu {
 struct RowRoom {
   CandidateCounters *counters;
   unsigned long long atoms, arcs;
+  unsigned long long leaves;  // so many are looked at: if there are more, all will be done again
 };
 
 struct GatherJob {
@@ -25,6 +26,7 @@ struct GatherJob {
   CandidateReach reach;
   CandidateView view;
   RowRoom room;
+  uint32_t first;   // brick of the view
   uint64_t *signs;  // of inactive leaves; nullptr: known already
 };
 
@@ -46,6 +48,13 @@ struct AtLeaves {
 __device__ __forceinline__ AtLeaves lengths2_at_leaves(const Vec3<float> &t, float step) {
   const auto more = [&](float along) { return step * (along + along + step); };
   return {length_squared(t), more(t.x), more(t.y), more(t.z)};
+}
+
+// Without room for its rows a brick or leaf has none; all will be done again.
+__device__ __forceinline__ CandidateRow candidate_row(const CandidateView &view, const GatheredRow &atoms,
+                                                      const GatheredRow &arcs) {
+  if (!atoms.fits || !arcs.fits) return {view.atoms, view.arcs, 0, 0};
+  return {view.atoms + atoms.first, view.arcs + arcs.first, atoms.count, arcs.count};
 }
 
 // Sign of a leaf between whose points no surface passes: that of its centre, to which no arc is as near as depth. By a
@@ -79,8 +88,10 @@ static __global__ __launch_bounds__(
   __shared__ typename GatherTeam<kWarps>::Memory team_memory;
   const GatherTeam<kWarps> team{team_memory};
   const int warp = static_cast<int>(threadIdx.x) / kWarp, lane = lane_id();
-  const uint32_t b = static_cast<uint32_t>(bricks.first) + (blockIdx.x * kBlock + static_cast<uint32_t>(warp)) / kWarps;
-  if (b >= bricks.last) return;
+  const uint32_t item =
+      static_cast<uint32_t>(bricks.first) + (blockIdx.x * kBlock + static_cast<uint32_t>(warp)) / kWarps;
+  if (item >= bricks.last) return;
+  const uint32_t b = job.first + item;
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
@@ -143,20 +154,20 @@ static __global__ __launch_bounds__(
       });
 
   uint32_t active_leaves = team.all_bits(warp_or(active));
-  // Without room for its rows the brick has none; all will be done again.
   const bool fits = atoms.fits && arcs.fits;
   if (!fits) active_leaves = 0;
   unsigned long long first_leaf = 0;
   if (team.leads()) {
     if (active_leaves != 0)
       first_leaf = atomicAdd(&job.room.counters->leaves, static_cast<unsigned long long>(__popc(active_leaves)));
-    job.view.rows[b] = fits ? CandidateRow{atoms.first, arcs.first, atoms.count, arcs.count} : CandidateRow{0, 0, 0, 0};
+    job.view.rows[b] = candidate_row(job.view, atoms, arcs);
     const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
     if (longest > kUsualRow) atomicMax(&job.room.counters->longest_row, longest);
   }
   if (team.rank() == 0) {
     first_leaf = __shfl_sync(kFullWarp, first_leaf, 0);
-    if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(active_leaves);
+    const bool are_looked_at = first_leaf + static_cast<unsigned>(__popc(active_leaves)) <= job.room.leaves;
+    if (lane == 0) job.view.brick_leaves[b] = static_cast<uint8_t>(are_looked_at ? active_leaves : 0);
     if (lane < kLeavesPerBrick && (active_leaves >> lane & 1) != 0)
       job.view.leaf_list[first_leaf + static_cast<unsigned>(place_in(active_leaves, lane))] =
           b * kLeavesPerBrick + static_cast<uint32_t>(lane);
@@ -181,6 +192,7 @@ struct NarrowJob {
   CandidateReach reach;
   CandidateView from, to;
   RowRoom room;
+  uint32_t first;  // slot
 };
 
 // The rows of the leaves from those of their bricks.
@@ -195,7 +207,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
   const int warp = static_cast<int>(threadIdx.x) / kWarp;
   const size_t item = leaves.first + (blockIdx.x * kGatherWarps + static_cast<uint32_t>(warp)) / kWarps;
   if (item >= leaves.last) return;
-  const uint32_t slot = static_cast<uint32_t>(item);
+  const uint32_t slot = job.first + static_cast<uint32_t>(item);
   const FeatureView &f = job.features;
   const CandidateReach &reach = job.reach;
   const Lattice &lattice = job.bricks.lattice;
@@ -225,8 +237,8 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
   };
   const float extent = 3.f * reach.spacing;
   const PointBox atom_box(low, extent, reach.grown), arc_box(low, extent, reach.overhang);
-  const uint32_t *const from_atoms = job.from.atoms + row.first_atom, *const from_arcs = job.from.arcs + row.first_arc;
-  const uint8_t *const from_leaves = job.from.arc_leaves + row.first_arc;
+  const uint32_t *const from_atoms = row.atoms, *const from_arcs = row.arcs;
+  const uint8_t *const from_leaves = job.from.arc_leaves + (from_arcs - job.from.arcs);
   const GatheredRow atoms = gather_row(
       team, along(from_atoms, row.atom_count),
       {near_memory[warp], kNarrowRoom, job.to.atoms, &job.room.counters->atoms, job.room.atoms},
@@ -247,9 +259,7 @@ static __global__ __launch_bounds__(kGatherWarps *kWarp) void narrow_candidates_
         return __ldg(from_arcs + k);
       });
   if (!team.leads()) return;
-  // Without room for its rows the leaf has none; all will be done again.
-  const bool fits = atoms.fits && arcs.fits;
-  job.to.rows[slot] = fits ? CandidateRow{atoms.first, arcs.first, atoms.count, arcs.count} : CandidateRow{0, 0, 0, 0};
+  job.to.rows[slot] = candidate_row(job.to, atoms, arcs);
   const uint32_t longest = atoms.count > arcs.count ? atoms.count : arcs.count;
   if (longest > kUsualRow) atomicMax(&job.room.counters->longest_row, longest);
 }
@@ -284,9 +294,11 @@ CandidateCounters fill_rows(E &executor, const char *name, ListRoom atoms, ListR
     view->atoms = executor.template allocate<uint32_t>(atoms.items).data;
     view->arcs = executor.template allocate<uint32_t>(arcs.items).data;
     view->arc_leaves = executor.template allocate<uint8_t>(arcs.items).data;
-    launch(RowRoom{counters, atoms.items, arcs.items});
-    const CandidateCounters found =
-        executor.expect(name, counters, CandidateCounters{atoms.items, arcs.items, most_leaves, 0});
+    const CandidateCounters most{atoms.items, arcs.items, most_leaves, 0};
+    CandidateCounters foreseen = most;
+    if (!executor.foresee(name, counters, most, &foreseen)) foreseen = most;
+    launch(RowRoom{counters, atoms.items, arcs.items, foreseen.leaves});
+    const CandidateCounters found = executor.expect(name, counters, most);
     const bool atoms_fit = atoms.holds(found.atoms), arcs_fit = arcs.holds(found.arcs);
     if (atoms_fit && arcs_fit) return found;
     executor.arena().rewind(mark);
@@ -304,13 +316,13 @@ void gather_candidates(E &executor, const CudaSlice &s, uint64_t *signs) {
   const size_t leaves = size_t(n) * kLeavesPerBrick;
   const SurfaceParameters &parameters = features.parameters;
   const CandidateReach reach = CandidateReach::of(parameters);
-  CandidateView view{};
-  view.first_brick = slice.first;
-  view.bricks = n;
-  view.rows = executor.template allocate<CandidateRow>(n).data;
+  CudaCandidates &candidates = s.candidates;
+  if (candidates.view.bricks == 0) candidates.open(executor, parameters, slice);
+  CandidateView &view = candidates.view;
+  const uint32_t first = slice.first - view.first_brick;
+  view.rows = candidates.brick_rows;
   view.row_shift = kRowOfBrick;
   view.leaf_list = executor.template allocate<uint32_t>(leaves).data;
-  view.brick_leaves = executor.template allocate<uint8_t>(n).data;
   // All items in the cells around a brick are looked at, at most twice.
   const float extent = 7.f * reach.spacing + 2.f * reach.grown;
   // Where rows are few, several warps work on each, the more the longer they are: so many for a multiprocessor are
@@ -344,30 +356,26 @@ void gather_candidates(E &executor, const CudaSlice &s, uint64_t *signs) {
                                   warps == kMostGatherWarps ? gather_candidates_kernel<kMostGatherWarps>
                                   : warps == kGatherWarps   ? gather_candidates_kernel<kGatherWarps>
                                                             : gather_candidates_kernel<1>,
-                                  n, gather, GatherJob{features, s.bricks, reach, view, room, signs});
+                                  n, gather, GatherJob{features, s.bricks, reach, view, room, first, signs});
                 });
-  CudaCandidates &candidates = s.candidates;
   candidates.leaves = static_cast<size_t>(found.leaves);
-  view.leaf_room = found.leaves;
-  if (parameters.spacing >= kSpacingOfLeafRows) {
+  if (have_leaf_rows(parameters)) {
     const CandidateView of_bricks = view;
-    view.rows = executor.template allocate<CandidateRow>(leaves).data;
+    view.rows = candidates.leaf_rows;
     view.row_shift = kRowOfLeaf;
     const bool by_blocks = may_have(leaves, kGatherWarps);
     const LaunchShape narrow{kGatherWarps * kWarp, by_blocks ? size_t(1) : size_t(kGatherWarps),
                              128 + uint64_t(std::max(kUsualRow, found.longest_row)) / 4};
-    found =
-        fill_rows(executor, "candidates of leaves", room_of(leaves, kLeafEdge, atoms, &rooms.leaf_atoms),
-                  room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
-                    executor.launch("narrow_candidates",
-                                    by_blocks ? narrow_candidates_kernel<kGatherWarps> : narrow_candidates_kernel<1>,
-                                    leaves, narrow, NarrowJob{features, s.bricks, reach, of_bricks, view, room});
-                  });
+    found = fill_rows(
+        executor, "candidates of leaves", room_of(leaves, kLeafEdge, atoms, &rooms.leaf_atoms),
+        room_of(leaves, kLeafEdge, arcs, &rooms.leaf_arcs), 0, &view, [&](const RowRoom &room) {
+          executor.launch("narrow_candidates",
+                          by_blocks ? narrow_candidates_kernel<kGatherWarps> : narrow_candidates_kernel<1>, leaves,
+                          narrow, NarrowJob{features, s.bricks, reach, of_bricks, view, room, first * kLeavesPerBrick});
+        });
   }
-  candidates.longest_row = std::max(kUsualRow, found.longest_row);
-  candidates.view = view;
-  candidates.have_deciders = false;
-  candidates.slice = slice;
+  candidates.longest_row = std::max({candidates.longest_row, kUsualRow, found.longest_row});
+  candidates.gathered = {view.first_brick, slice.last};
 }
 
 }  // namespace gpu

@@ -67,9 +67,9 @@ struct SignJob {
     SignLeaf leaf;
     leaf.slot = view.leaf_list[place];
     leaf.row = view.row_of(leaf.slot);
-    leaf.atoms = view.atoms + leaf.row.first_atom;
-    leaf.arcs = view.arcs + leaf.row.first_arc;
-    leaf.arc_leaves = view.arc_leaves + leaf.row.first_arc;
+    leaf.atoms = leaf.row.atoms;
+    leaf.arcs = leaf.row.arcs;
+    leaf.arc_leaves = view.arc_leaves + (leaf.row.arcs - view.arcs);
     const Lattice &lattice = bricks.lattice;
     leaf.first = lattice.first_point(bricks.place(view.first_brick + leaf.slot / kLeavesPerBrick));
     leaf.center = leaf_center(lattice.position(leaf.first.x, leaf.first.y, leaf.first.z), leaf.number(), reach.spacing);
@@ -107,8 +107,7 @@ struct SignJob {
     unsigned words[kLanePoints];
 #pragma unroll
     for (int c = 0; c < kLanePoints; ++c) {
-      if (view.deciders)
-        view.deciders[size_t(leaf.slot) * 64 + static_cast<size_t>(c * kWarp + lane_id())] = found.decider[c];
+      if (view.deciders) view.deciders_of(leaf.slot)[c * kWarp + lane_id()] = found.decider[c];
       words[c] = __ballot_sync(kFullWarp, found.inside[c]);
     }
     if (lane_id() == 0 && signs)

@@ -35,7 +35,7 @@ VertexJob open_vertices(E &executor, const CudaSlice &s, const VertexWork &v) {
   job.first = v.sizes.first_vertex;
   job.count = v.sizes.vertices;
   if (job.count == 0) return job;
-  if (!candidates.are_of(s.slice)) gather_candidates(executor, s, nullptr);
+  if (!candidates.have(s.slice)) gather_candidates(executor, s, nullptr);
   job.features = features;
   job.bricks = s.bricks;
   job.layout = v.layout;
@@ -121,7 +121,7 @@ void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWo
   const FeatureView &features = s.features;
   const CudaCandidates &candidates = s.candidates;
   const auto mark = executor.arena().mark();
-  const bool gives_back = candidates.are_of(s.slice) && candidates.vertex_room.size == 0;
+  const bool gives_back = candidates.have(s.slice) && candidates.vertex_room.size == 0;
   const VertexJob job = open_vertices(executor, s, v);
   prepare(job);
   const uint64_t look = vertex_steps(features, candidates.longest_row);
@@ -176,10 +176,10 @@ void emit_vertices(E &executor, const CudaSlice &s, const VertexWork &v) {
     prepare_vertices(executor, job, v.sizes.leaves, s.candidates.longest_row);
   });
 }
-// Both. triangles_made(): all that makes the triangles is given.
-template <class E, class TrianglesMade>
+// As of the back end.
+template <class E, class TrianglesMade, class EmitApart>
 void emit_mesh(E &executor, const CudaSlice &s, const VertexWork &v, const TableView &table,
-               const TrianglesMade &triangles_made) {
+               const TrianglesMade &triangles_made, const EmitApart &emit_apart) {
   emit_vertices_once_prepared(executor, s, v, [&](const VertexJob &job) {
     const uint64_t row = s.candidates.longest_row;
     if (job.count > 0 && pay_side_by_side(executor, job, v.sizes.leaves)) {
@@ -188,8 +188,7 @@ void emit_mesh(E &executor, const CudaSlice &s, const VertexWork &v, const Table
       triangles_made();
       return;
     }
-    emit_triangles(executor, s.bricks, v.layout, s.slice, table, v.mesh);
-    triangles_made();
+    emit_apart();
     prepare_vertices(executor, job, v.sizes.leaves, row);
   });
 }

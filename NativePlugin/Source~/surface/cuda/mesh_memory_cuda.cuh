@@ -76,7 +76,7 @@ class MeshMemory<CudaExecutor> {
     try {
       const DeviceGuard guard(executor_.device());
       if (!may_hand_back()) return;
-      for (cudaEvent_t event : {triangles_made_, vertices_made_})
+      for (cudaEvent_t event : {early_triangles_made_, triangles_made_, vertices_made_})
         if (event) cudaEventDestroy(event);
       cudaStreamSynchronize(executor_.stream_handle());  // kernels bring little meshes to memory that is ours
       if (copies_) {
@@ -171,12 +171,25 @@ class MeshMemory<CudaExecutor> {
 
   // What the executor has been given so far makes the triangles of a mesh.
   void note_triangles(CudaExecutor &executor) { note(executor, &triangles_made_); }
-  // If the mesh is handed out on the host as it is, and large, they go there while the rest of it is made.
-  void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) {
+  // Whether triangles of a mesh go to the host while the rest of it is made: if it is handed out there as it is, and
+  // large. Of one whose size is anticipated, there may be fewer.
+  bool sends_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) const {
     constexpr size_t kWorthAStream = size_t(1) << 13;  // triangles: 98 KB
-    if (!to_host_ || purpose != MeshPurpose::kDelivered || mesh.triangles < kWorthAStream) return;
-    make_room_for(mesh, without_spare(mesh.shape));
-    bring_after(triangles_made_, brought_.indices, mesh.view.indices, mesh.triangles * 12);
+    return to_host_ && purpose == MeshPurpose::kDelivered && mesh.triangles >= kWorthAStream;
+  }
+  // The first of them, which what the executor has been given so far makes, about so many.
+  void bring_early_triangles(CudaExecutor &executor, const MeshMemoryView &mesh, size_t count) {
+    make_room_for(mesh, mesh.shape);
+    note(executor, &early_triangles_made_);
+    bring_after(early_triangles_made_, brought_.indices, mesh.view.indices, count * 12);
+    early_ = count;
+  }
+  // All the others; of those that were brought early, so many are right.
+  void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose, size_t right) {
+    if (!sends_triangles_ && !sends_triangles(mesh, purpose)) return;
+    if (!sends_triangles_) make_room_for(mesh, without_spare(mesh.shape));
+    const size_t first = std::min(early_, right);
+    bring_after(triangles_made_, brought_.triangle(first), mesh.view.triangle(first), (mesh.triangles - first) * 12);
   }
   // Then its vertices as well, once they are as they are handed out, while the mesh is measured.
   void bring_vertices(CudaExecutor &executor, const MeshMemoryView &mesh) {
@@ -232,6 +245,7 @@ class MeshMemory<CudaExecutor> {
   void wait_for_copies() {
     if (sends_triangles_) check_cuda(cudaStreamSynchronize(copies_), "cudaStreamSynchronize");
     sends_triangles_ = sends_vertices_ = false;
+    early_ = 0;
   }
   // Room for a mesh that stays on the device. A budget covers it.
   void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
@@ -305,7 +319,8 @@ class MeshMemory<CudaExecutor> {
   const cudaStream_t told_stream_;
   PooledMesh host_mesh_, device_mesh_;
   bool keep_ = false, to_host_ = false, leaves_owners_ = false;
-  cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
+  cudaEvent_t early_triangles_made_ = nullptr, triangles_made_ = nullptr, vertices_made_ = nullptr;
+  size_t early_ = 0;  // triangles that were brought early
   cudaStream_t copies_ = nullptr;
   bool sends_triangles_ = false, sends_vertices_ = false;  // they are on their way, to here:
   MeshView brought_{};

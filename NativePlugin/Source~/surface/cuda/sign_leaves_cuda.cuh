@@ -160,12 +160,7 @@ static __global__ __launch_bounds__(kSignThreads,
 template <class E>
 void evaluate_leaves(E &executor, const CudaSlice &s, bool deciders, uint64_t *signs) {
   CudaCandidates &candidates = s.candidates;
-  if (deciders) {
-    if (candidates.decider_room.size == 0)
-      candidates.decider_room = executor.template allocate<uint32_t>(size_t(candidates.slice.size()) * kBrickPoints);
-    candidates.view.deciders = candidates.decider_room.data;
-    candidates.have_deciders = true;
-  }
+  if (deciders) candidates.decide(executor, s.slice);
   const SignJob job{s.features, s.bricks, CandidateReach::of(s.features.parameters), candidates.view, signs};
   const uint64_t steps = candidates.look_steps(s.features);
   if (candidates.view.row_shift == kRowOfLeaf)

@@ -143,14 +143,15 @@ void mark_thin_walls(E &executor, const CudaSlice &s, const uint64_t *signs, uin
   CudaRooms &rooms = s.rooms;
   const CudaCandidates &candidates = s.candidates;
   const size_t leaves = static_cast<size_t>(s.slice.size()) * kLeavesPerBrick;
-  if (!candidates.are_of(s.slice)) gather_candidates(executor, s, nullptr);
-  if (!candidates.have_deciders) evaluate_leaves(executor, s, true, nullptr);
+  if (!candidates.have(s.slice)) gather_candidates(executor, s, nullptr);
+  if (!candidates.have_deciders()) evaluate_leaves(executor, s, true, nullptr);
   const auto mark = executor.arena().mark();
   WallJob job{};
   job.features = features;
   job.bricks = s.bricks;
   job.reach = CandidateReach::of(features.parameters);
   job.view = candidates.view;
+  job.first_slot = (s.slice.first - job.view.first_brick) * kLeavesPerBrick;
   job.signs = signs;
   job.marks = marks;
   job.has_short_cuts = short_cuts_hold(s.bricks.lattice);

@@ -62,8 +62,7 @@ struct ListedCandidates {
 
 __device__ __forceinline__ ListedCandidates row_candidates(const CandidateView &view, uint32_t slot) {
   const CandidateRow row = view.row_of(slot);
-  return {view.atoms + row.first_atom, view.arcs + row.first_arc, static_cast<int>(row.atom_count),
-          static_cast<int>(row.arc_count)};
+  return {row.atoms, row.arcs, static_cast<int>(row.atom_count), static_cast<int>(row.arc_count)};
 }
 
 __device__ __forceinline__ ListedCandidates vertex_candidates(const VertexJob &job, uint32_t k) {

@@ -31,12 +31,18 @@ struct WallJob {
   const uint64_t *signs;
   uint64_t *marks;
   WallCounters *counters;
-  uint32_t *leaves;  // that have edges: 8 * brick of the slice + leaf
-  uint64_t *edges;   // by that number, kWallSteps words each: those that may be walls
-  uint64_t *walks;   // 64 * kWallSteps * number of the leaf + 64 * step + bit
+  uint32_t first_slot;  // of the slice
+  uint32_t *leaves;     // slots of those that have edges
+  uint64_t *edges;      // edges_of()
+  uint64_t *walks;      // 64 * kWallSteps * slot + 64 * step + bit
   unsigned long long walk_room;
   int run_room;         // of shared memory for what edges of a warp choose together; 0: they do not
   bool has_short_cuts;  // whether what rules edges out without a walk is what walks would find
+
+  // Those of a leaf that may be walls: kWallSteps words.
+  __device__ __forceinline__ uint64_t *edges_of(uint32_t slot) const {
+    return edges + size_t(slot - first_slot) * kWallSteps;
+  }
 };
 
 // Where coordinates are coarse beside the steps of a walk it may not be. An edge between two slices is walked for lack
@@ -54,10 +60,9 @@ constexpr int kWallWarps = kWallThreads / kWarp;
 // A thread per leaf of the slice.
 static __global__ __launch_bounds__(kWallThreads, 6) void find_wall_candidates_kernel(QueuedItems queued, WallJob job) {
   const LaunchItems items = queued.in_turn();
-  if (job.view.counted->leaves > job.view.leaf_room) return;  // of some, nothing is known
   const size_t k = items.first + blockIdx.x * size_t(kWallThreads) + threadIdx.x;
   const bool on = k < items.last;
-  const uint32_t slot = static_cast<uint32_t>(on ? k : items.first);
+  const uint32_t slot = job.first_slot + static_cast<uint32_t>(on ? k : items.first);
   const int leaf = static_cast<int>(slot % kLeavesPerBrick),
             brick = static_cast<int>(job.view.first_brick + slot / kLeavesPerBrick);
   const glm::ivec3 place = job.bricks.place(brick);
@@ -78,7 +83,7 @@ static __global__ __launch_bounds__(kWallThreads, 6) void find_wall_candidates_k
   const bool any = on && find_wall_candidates(words, edges);
   if (any) {
 #pragma unroll
-    for (int s = 0; s < kWallSteps; ++s) job.edges[size_t(slot) * kWallSteps + size_t(s)] = edges[s];
+    for (int s = 0; s < kWallSteps; ++s) job.edges_of(slot)[s] = edges[s];
   }
   append(job.leaves, &job.counters->leaves, slot, any);
 }
@@ -110,14 +115,14 @@ __device__ __forceinline__ Vec3<float> wall_point(const WallJob &job, uint32_t b
 // What decides about a point, by its bit in a leaf; or about one that is counted from the first of a brick.
 __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t slot, int bit) {
   if (!(job.view.brick_leaves[slot / kLeavesPerBrick] >> (slot % kLeavesPerBrick) & 1)) return kNotLookedAt;
-  return job.view.deciders[size_t(slot) * 64 + size_t(bit)];
+  return job.view.deciders_of(slot)[bit];
 }
 __device__ __forceinline__ uint32_t decider_at(const WallJob &job, uint32_t brick, const glm::ivec3 &p) {
   const LocatedPoint at = job.bricks.locate(brick, p);
   if (at.brick < 0) return kNotLookedAt;
-  const uint32_t of_slice = static_cast<uint32_t>(at.brick) - job.view.first_brick;
-  if (of_slice >= job.view.bricks) return kNotLookedAt;
-  return decider_at(job, of_slice * kLeavesPerBrick + static_cast<uint32_t>(at.leaf), at.bit);
+  const uint32_t brick_there = static_cast<uint32_t>(at.brick);
+  if (brick_there - job.view.decided.first >= job.view.decided.size()) return kNotLookedAt;
+  return decider_at(job, job.view.slot_of(brick_there, at.leaf), at.bit);
 }
 
 // That of a first end. It is not known in leaves that no feature's part of the surface may pass: to be outside there is
@@ -161,7 +166,7 @@ struct WallRound {
     if (on) {
       slot = job.leaves[k];
 #pragma unroll
-      for (int s = 0; s < kWallSteps; ++s) points |= job.edges[size_t(slot) * kWallSteps + size_t(s)];
+      for (int s = 0; s < kWallSteps; ++s) points |= job.edges_of(slot)[s];
     }
     starts_with = warp_inclusive_sum(popcount64(points), lane_id());
     leaves = __popc(__ballot_sync(kFullWarp, on && starts_with <= kRoundStarts));
@@ -203,8 +208,7 @@ __device__ __forceinline__ uint32_t uncovered_steps(const WallJob &job, const Wa
   if (probe.distance > f.parameters.depth) return 0;
   const float depth2 = f.parameters.depth * f.parameters.depth;
   // Halves of the words of its leaf.
-  const uint32_t *const edges =
-      reinterpret_cast<const uint32_t *>(job.edges + size_t(start.slot) * kWallSteps) + start.bit / 32;
+  const uint32_t *const edges = reinterpret_cast<const uint32_t *>(job.edges_of(start.slot)) + start.bit / 32;
   uint32_t left = 0;
 #pragma unroll
   for (int s = 0; s < kWallSteps; ++s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// GPU: signs of leaves that have rows of their own (kSpacingOfLeafRows): hundreds of atoms and arcs are near each, and
+// GPU: signs of leaves that have rows of their own (have_leaf_rows): hundreds of atoms and arcs are near each, and
 // there are so few of them that a block of warps shares the work on one. Each warp looks at every kWideWarps-th
 // candidate, for all points, and of what the warps found the best counts; of several, that with the lowest number.
 #pragma once

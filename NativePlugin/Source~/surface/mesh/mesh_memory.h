@@ -189,7 +189,7 @@ class MeshMemory<CountingExecutor<Executor>> {
   }
   void save(CountingExecutor<Executor> &, const MeshMemoryView &, const MeshView &, size_t, size_t) {}
   void note_triangles(CountingExecutor<Executor> &) {}
-  void bring_triangles(const MeshMemoryView &, MeshPurpose) {}
+  void bring_triangles(const MeshMemoryView &, MeshPurpose, size_t) {}
   void bring_vertices(CountingExecutor<Executor> &, const MeshMemoryView &) {}
 };
 

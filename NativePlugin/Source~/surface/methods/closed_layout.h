@@ -62,14 +62,16 @@ template <class Work>
 void settle_mesh(Work &work, MeshMemoryView *mesh) {
   auto &executor = work.executor;
   if (!work.untold.totals) return;
+  size_t right = ~size_t(0);  // of the triangles that are out
   if (executor.verify_counts()) {
     const MeshTotals found = executor.verified(work.untold.totals);
     narrow_mesh(mesh, found.vertices, found.triangles);
     note_size(work, work.untold.bricks ? executor.verified(work.untold.bricks).count : work.untold.most_bricks,
               {found.vertices, found.triangles}, found.leaves);
+    right = found.early_triangles;
   }
   work.untold = {};
-  if (!mesh->in_pieces) work.memory.bring_triangles(*mesh, work.purpose);
+  if (!mesh->in_pieces) work.memory.bring_triangles(*mesh, work.purpose, right);
 }
 // The same in the midst of making it.
 template <class Work>
@@ -87,7 +89,7 @@ void emit_all_triangles(Work &work, const BrickSet &bricks, const MeshLayout &la
       executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
   if (mesh.in_pieces) return;
   work.memory.note_triangles(executor);
-  work.memory.bring_triangles(mesh, work.purpose);  // they go out while the vertices are made
+  work.memory.bring_triangles(mesh, work.purpose, 0);  // they go out while the vertices are made
 }
 
 }  // namespace quickses

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The exact surface of a large mesh that goes from a GPU to the host: slab by slab, so that the first triangles and
 // vertices are on the bus while signs of the others are found. For frames of which the one before told how large the
-// mesh will be; each step goes as far as what it reads is final. The mesh is that of exact_surface.h, byte for byte.
+// mesh will be; each step goes as far as what it reads is final, and signs no farther ahead than that takes. The mesh
+// is that of exact_surface.h, byte for byte.
 #pragma once
 
 #include "surface/methods/closed_layout.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <vector>
 
 namespace quickses {
 
@@ -24,6 +24,9 @@ struct Slabs {
 
   uint32_t end(uint32_t slab) const { return static_cast<uint32_t>(uint64_t(bricks) * (slab + 1) / count); }
   BrickRange range(uint32_t slab) const { return {slab > 0 ? end(slab - 1) : 0, end(slab)}; }
+  // Walls of a slab take the signs around.
+  uint32_t signs_end(uint32_t slab) const { return slab + 1 == count ? bricks : end(slab) + near; }
+  BrickRange signs(uint32_t slab) const { return {slab > 0 ? signs_end(slab - 1) : 0, signs_end(slab)}; }
   // How many bricks are, when walls of so many slabs are found.
   uint32_t final_bricks(uint32_t slabs, Step step) const {
     return slabs == count ? bricks : slabs == 0 ? 0 : end(slabs - 1) - step * near;
@@ -53,21 +56,18 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
   return slabs;
 }
 
-// What bricks own that come before two of them.
-struct TotalsBefore {
-  BrickTotals emitted, placed;
-};
-// By one thread more of the last step of counting: a launch of its own takes three microseconds for each slab.
+// What the bricks own that come before one of them is told by one thread more of the last step of counting: a launch of
+// its own takes three microseconds for each slab.
 struct CountAndTell {
   CountBorderChanges count;
   size_t bricks;
-  const BrickTotals *emitted, *placed;
-  TotalsBefore *out;
+  const BrickTotals *before;
+  BrickTotals *out;
   QSES_HOST_DEVICE void operator()(size_t i) const {
     if (i < bricks)
       count(i);
     else
-      *out = {*emitted, *placed};
+      *out = *before;
   }
 };
 
@@ -94,41 +94,39 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
 
   const auto end_of_mesh = executor.arena().mark();
   const Span<BrickTotals> owned = executor.template allocate<BrickTotals>(bricks.count);
-  TotalsBefore *const told = executor.template take_counts<TotalsBefore>();
+  BrickTotals *const told = executor.template take_counts<BrickTotals>();
   const VertexStarts starts{work.settings.relaxation_steps > 0, nullptr, work.table.ring, &layout.totals->unplaced};
-  std::vector<Candidates<Executor>> candidates(slabs.count);
-  Span<uint32_t> deciders[2];  // of a slab until its walls are found
-  if (has_walls)
-    for (Span<uint32_t> &room : deciders)
-      room = executor.template allocate<uint32_t>((size_t(bricks.count) / slabs.count + 1) * kBrickPoints);
+  Candidates<Executor> candidates{};
+  candidates.open(executor, work.parameters, {0, bricks.count});
+  // Those that walls of a slab ask for, which look to both sides.
+  if (has_walls) candidates.keep_deciders(executor, bricks.count / slabs.count + 1 + 2 * slabs.near);
   const auto vertex_words = [&](size_t vertices, size_t leaves) {
     return Candidates<Executor>::vertex_words(work.parameters, vertices, leaves);
   };
-  // For one slab after the other, of which few are much fuller than the mean.
-  Span<uint32_t> vertex_room =
-      executor.template allocate<uint32_t>(vertex_words(slabs.room.vertices, slabs.room.leaves) / slabs.count * 3 / 2);
+  // For one run of bricks after the other, of which the last is the widest; few are much fuller than the mean.
+  const uint32_t widest = slabs.newly_final(slabs.count, Slabs::kEmission).size();
+  Span<uint32_t> vertex_room = executor.template allocate<uint32_t>(
+      vertex_words(slabs.room.vertices, slabs.room.leaves) / bricks.count * (widest + widest / 8));
   const auto turn_to_slab = [&](uint32_t slab) {
     executor.turn_counts_to(work.parameters.spacing, slabs.count << 8 | (slab + 1));
   };
 
-  const auto work_on = [&](uint32_t slab) {
-    return typename B::Slice{work.features, bricks, slabs.range(slab), work.rooms, candidates[slab]};
+  const auto work_on = [&](BrickRange slice) {
+    return typename B::Slice{work.features, bricks, slice, work.rooms, candidates};
   };
   const auto find_signs = [&](uint32_t slab) {
     work.timer.begin("exact_ses");
     turn_to_slab(slab);
-    B::gather_candidates(executor, work_on(slab), signs.data);
-    candidates[slab].decider_room = deciders[slab % 2];
-    B::evaluate_signs(executor, work_on(slab), signs.data);
+    B::gather_candidates(executor, work_on(slabs.signs(slab)), signs.data);
+    B::evaluate_signs(executor, work_on(slabs.signs(slab)), signs.data);
   };
   const auto find_walls = [&](uint32_t slab) {
     if (!has_walls) return;
     work.timer.begin("thin_walls");
     turn_to_slab(slab);
-    B::mark_thin_walls(executor, work_on(slab), signs.data, marks.data);
+    B::mark_thin_walls(executor, work_on(slabs.range(slab)), signs.data, marks.data);
   };
-  // When walls of so many slabs are found. What is emitted then, and vertices of slabs behind which all is final, are
-  // told of.
+  // When walls of so many slabs are found. What is emitted then is told of.
   const auto lay_out = [&](uint32_t found) {
     work.timer.begin("marching_cubes");
     const BrickRange final_signs = slabs.newly_final(found, Slabs::kSigns),
@@ -143,7 +141,6 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
                       CountAndTell{{bricks, layout, emitted.first, slabs.final_bricks(found, Slabs::kCounts)},
                                    emitted.size(),
                                    layout.base + emitted.last,
-                                   layout.base + (found > 1 ? slabs.end(found - 2) : 0),
                                    told});
     if (found == slabs.count) {
       executor.turn_counts_to(work.parameters.spacing);
@@ -154,56 +151,49 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   };
 
   // Beside the slabs that follow, from which it gets nothing; so it is a part of the time of their stages.
-  TotalsBefore done{};
+  BrickTotals done{};
   std::optional<typename B::SecondStream> second(std::in_place, executor);
-  const auto place_vertices = [&](uint32_t slab, const BrickTotals &end) {
-    turn_to_slab(slab);
-    const SliceSizes sizes = sizes_between(done.placed, end);
+  const auto place_vertices = [&](uint32_t found, const BrickTotals &end) {
+    turn_to_slab(found - 1);
+    const SliceSizes sizes = sizes_between(done, end);
     const size_t words = vertex_words(sizes.vertices, sizes.leaves);
     if (words > vertex_room.size) {
       vertex_room = executor.template allocate<uint32_t>(words);
       second->follow();
     }
-    candidates[slab].vertex_room = vertex_room;
+    candidates.vertex_room = vertex_room;
     second->queue([&] {
-      B::emit_vertices(executor, work_on(slab), VertexWork{layout, sizes, starts, mesh.view});
+      const BrickRange emitted = slabs.newly_final(found, Slabs::kEmission);
+      B::emit_vertices(executor, work_on(emitted), VertexWork{layout, sizes, starts, mesh.view});
       const MeshView part = view_from(mesh.view, sizes.first_vertex, 0);
       paint(work, part, sizes.vertices);
       work.memory.send_vertices(executor, part, sizes.vertices);
     });
-    done.placed = end;
   };
   // What was told. Waits for it; the GPU has the next slab to work on meanwhile.
   const auto deliver = [&](uint32_t found) {
     executor.verify_counts();
     // Where there is more than was foreseen no more is emitted, and the last look at the counts will throw.
     if (!slabs.room.covers(executor.verified(layout.totals))) return;
-    const TotalsBefore now = executor.verified(told);
-    work.memory.send_triangles(view_from(mesh.view, 0, done.emitted.triangles),
-                               now.emitted.triangles - done.emitted.triangles);
-    done.emitted = now.emitted;
-    if (found > 1) place_vertices(found - 2, now.placed);
-    if (found == slabs.count) place_vertices(found - 1, now.emitted);
+    const BrickTotals now = executor.verified(told);
+    work.memory.send_triangles(view_from(mesh.view, 0, done.triangles), now.triangles - done.triangles);
+    place_vertices(found, now);
+    done = now;
     work.progress.report(0.85 * found / slabs.count);
   };
   for (uint32_t slab = 0; slab < slabs.count; ++slab) {
     find_signs(slab);
-    if (slab == 0) continue;
-    find_walls(slab - 1);
-    if (slab > 1) deliver(slab - 1);
-    lay_out(slab);
+    if (slab > 0) deliver(slab);
+    find_walls(slab);
+    lay_out(slab + 1);
   }
-  find_walls(slabs.count - 1);
-  deliver(slabs.count - 1);
-  lay_out(slabs.count);
   deliver(slabs.count);
   work.timer.begin("projection");
   second.reset();
   executor.turn_counts_to(work.parameters.spacing);
 
-  narrow_mesh(&mesh, done.emitted.vertices, done.emitted.triangles);
-  note_size(work, executor.verified(bricks.found).count, {done.emitted.vertices, done.emitted.triangles},
-            done.emitted.leaves);
+  narrow_mesh(&mesh, done.vertices, done.triangles);
+  note_size(work, executor.verified(bricks.found).count, {done.vertices, done.triangles}, done.leaves);
   work.report->slice_count = slabs.count;
   executor.arena().rewind(end_of_mesh);
   mesh.unplaced = starts.unplaced;

@@ -183,10 +183,21 @@ MeshMemoryView build_exact_surface(Work &work) {
   // In a short frame triangles and vertices may be made side by side; but for stages, whose times are to be told apart.
   const bool together = share && !mesh.in_pieces && executor.runs_ahead() && !work.timer.is_enabled();
   const auto note_triangles = [&] { work.memory.note_triangles(executor); };  // they may go out meanwhile
-  if (!mesh.in_pieces && !together) {
-    B::emit_triangles(executor, bricks, layout, BrickRange{0, bricks.count}, work.table, mesh.view);
+  const auto emit_triangles_first = [&] {
+    const auto emit_run = [&](BrickRange run) {
+      if (run.size() > 0) B::emit_triangles(executor, bricks, layout, run, work.table, mesh.view);
+    };
+    uint32_t early = 0;
+    if constexpr (Executor::kIsCuda && !Executor::kCounts)
+      if (layout.early_triangles > 0 && work.memory.sends_triangles(mesh, work.purpose)) {
+        early = static_cast<uint32_t>(early_bricks(bricks.count));
+        emit_run({0, early});
+        work.memory.bring_early_triangles(executor, mesh, static_cast<size_t>(layout.early_triangles));
+      }
+    emit_run({early, bricks.count});
     note_triangles();
-  }
+  };
+  if (!mesh.in_pieces && !together) emit_triangles_first();
   const auto emit_slice = [&](auto &any_executor, BrickRange slice, bool with_triangles) {
     Candidates<Executor> own{};
     MeshPart part{mesh.view, 0, 0};
@@ -195,7 +206,7 @@ MeshMemoryView build_exact_surface(Work &work) {
     const typename B::Slice slice_work{features, bricks, slice, work.rooms, share ? shared : own};
     const VertexWork vertices{layout, sizes, starts, part.view};
     if (with_triangles && together) {
-      B::emit_mesh(any_executor, slice_work, vertices, work.table, note_triangles);
+      B::emit_mesh(any_executor, slice_work, vertices, work.table, note_triangles, emit_triangles_first);
       return part;
     }
     B::emit_vertices(any_executor, slice_work, vertices);

@@ -61,9 +61,9 @@ struct VertexWork {
 //       inside because of edges of the slice's bricks (thin_walls.h)
 //   emit_vertices(E, slice, vertices)
 //   emit_triangles(E, bricks, layout, slice, table, mesh)
-//   emit_mesh(E, slice, vertices, table, triangles_made)
-//       both, of a slice that is not empty, side by side where that is quicker; triangles_made() is called once all is
-//       given that makes the triangles
+//   emit_mesh(E, slice, vertices, table, triangles_made, emit_apart)
+//       both, of a slice that is not empty: side by side where that is quicker, with triangles_made() once all is given
+//       that makes the triangles; else these come first, by emit_apart()
 //   evaluate_density(E, density, bricks, slices, signs)
 //       signs of a Gaussian surface; slices(work_on) calls work_on(slice) for runs of bricks
 //   emit_density_vertices(E, density, bricks, layout, mesh)
@@ -104,8 +104,8 @@ struct BackendContract {
   static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
                     const TableView &, const MeshView &>,
                 "emit_triangles");
-  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)()>), const Slice &, const VertexWork &,
-                    const TableView &, void (*)()>,
+  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)(), void (*)()>), const Slice &,
+                    const VertexWork &, const TableView &, void (*)(), void (*)()>,
                 "emit_mesh");
   static_assert(has<decltype(&B::template evaluate_density<Executor, NoSlices>), const GaussianDensity &,
                     const BrickSet &, const NoSlices &, uint64_t *>,

@@ -144,6 +144,7 @@ struct CountBorderChanges {
     layout.totals->vertices = all.vertices;
     layout.totals->triangles = all.triangles;
     layout.totals->leaves = all.leaves;
+    layout.totals->early_triangles = layout.base[early_bricks(counted)].triangles;
   }
 };
 
@@ -183,8 +184,9 @@ MeshCounts lay_out_mesh(Executor &executor, const BrickSet &bricks, const uint64
   executor.for_each(n, CountBorderChanges{bricks, *layout, 0, n});
   layout->near = kAnyNear;
   const MeshTotals totals =
-      n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{0, 0, 0, 0, 0, kAnyNear}) : MeshTotals{};
+      n > 0 ? executor.expect("mesh", layout->totals, MeshTotals{0, 0, 0, 0, 0, kAnyNear, 0}) : MeshTotals{};
   layout->border_changes = totals.border_changes;
+  layout->early_triangles = totals.early_triangles;
   // The bases wrap if there are too many; then the true totals are summed up for the message.
   if (!Executor::kCounts && !fits_bases(n)) {
     const auto sum = [&](uint32_t BrickTotals::*which) {

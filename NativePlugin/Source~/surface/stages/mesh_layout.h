@@ -18,13 +18,17 @@ constexpr int kBrickMasks = kLeavesPerBrick * kAxes;
 
 constexpr uint32_t kAnyNear = ~uint32_t(0);
 
+// Triangles of so many of the bricks may go out while those of the others are made.
+QSES_FN constexpr size_t early_bricks(size_t bricks) { return bricks / 8; }
+
 // What is known of all bricks together, in the memory of the back end.
 struct MeshTotals {
   uint32_t vertices, triangles;
-  uint32_t leaves;          // that own vertices
-  uint32_t border_changes;  // pairs of a brick and an inactive neighbour next to which signs differ
-  uint32_t unplaced;        // vertices for which no feature was found; counted while they are emitted
-  uint32_t near;            // numbers of two bricks next to each other differ by so much at most (GPU)
+  uint32_t leaves;           // that own vertices
+  uint32_t border_changes;   // pairs of a brick and an inactive neighbour next to which signs differ
+  uint32_t unplaced;         // vertices for which no feature was found; counted while they are emitted
+  uint32_t near;             // numbers of two bricks next to each other differ by so much at most (GPU)
+  uint32_t early_triangles;  // of the early bricks
 
   // most.near: kAnyNear for whoever does not care, else 0.
   static MeshTotals anticipated(const MeshTotals &last, const MeshTotals &most) {
@@ -33,7 +37,8 @@ struct MeshTotals {
             and_some_more(last.leaves),
             0,
             0,
-            std::max(and_some_more(last.near), most.near)};
+            std::max(and_some_more(last.near), most.near),
+            last.early_triangles};
   }
   bool covers(const MeshTotals &found) const {
     return found.vertices <= vertices && found.triangles <= triangles && found.leaves <= leaves &&
@@ -44,7 +49,7 @@ struct MeshTotals {
 // 32 bits: what is more does not become a mesh.
 inline MeshTotals expected_value(const WorkFacts &facts, const MeshTotals *) {
   const auto number = [](double n) { return static_cast<uint32_t>(std::min(n, 4294967294.0)); };
-  return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0, 0};
+  return {number(facts.size.vertices), number(facts.size.triangles), number(facts.size.leaves), 0, 0, 0, 0};
 }
 
 // What bricks own; leaves: those that own vertices.
@@ -67,6 +72,7 @@ struct MeshLayout {
   MeshTotals *totals;
   uint64_t vertex_total, triangle_total;  // of all bricks; if they are anticipated, there may be fewer
   uint64_t leaf_total;                    // that own vertices
+  uint64_t early_triangles;               // of the early bricks; if they are anticipated, about
   uint64_t border_changes;                // 0, or the set of bricks must grow before anything is emitted
   uint32_t near;                          // at most; where it is not, what is emitted may not be final
 
