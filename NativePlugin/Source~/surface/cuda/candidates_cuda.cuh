@@ -97,8 +97,8 @@ struct CandidateView {
   uint8_t *arc_leaves;  // per entry of arcs: bit set = can be within depth of a point of that leaf
   uint32_t *leaf_list;  // slots of the leaves between whose points the surface may pass
   const CandidateCounters *counted;
-  // What the signs of the points of those leaves are from; nullptr: not kept. Of the bricks decided, which may be fewer
-  // than all: later ones take the place of the first.
+  // What the signs of points are from, in leaves between whose points the surface may pass; nullptr: not kept. Of the
+  // bricks decided, which may be fewer than were gathered: later ones take the place of the first.
   uint32_t *deciders;
   uint32_t decider_mask;
   BrickRange decided;
@@ -131,13 +131,13 @@ __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int l
 
 // What the stages of a slice share: rows of atoms and arcs, and its active leaves.
 struct CudaCandidates {
-  BrickRange gathered{0, 0};
+  BrickRange gathered{0, 0}, part{0, 0};  // all, and the last part, whose leaves are listed
   gpu::CandidateView view{};
   gpu::CandidateRow *brick_rows = nullptr, *leaf_rows = nullptr;
-  Span<uint32_t> decider_room{};
-  Span<uint32_t> vertex_room{};  // for vertices (vertex_words); none: it is allocated
-  size_t leaves = 0;             // of the part that was gathered last
-  uint32_t longest_row = 0;      // of atoms or arcs, at most
+  Span<uint32_t> decider_room{};  // of view.deciders: so many bricks are decided at a time; none: it is allocated
+  Span<uint32_t> vertex_room{};   // for vertices (vertex_words); none: it is allocated
+  size_t leaves = 0;              // that are listed
+  uint32_t longest_row = 0;       // of atoms or arcs, at most
 
   // Room for the rows of bricks that are gathered at once, or part by part, each part behind the one before.
   template <class E>
@@ -162,13 +162,14 @@ struct CudaCandidates {
   static size_t vertex_words(const SurfaceParameters &parameters, size_t vertices, size_t leaves) {
     return 4 * vertices + leaves * gpu::leaf_list_words(parameters);
   }
-  // Those of the part that was gathered last are about to be found.
+  // Those of the last part are about to be found.
   template <class E>
-  void decide(E &executor, BrickRange part) {
+  void decide(E &executor) {
     if (decider_room.size == 0) keep_deciders(executor, view.bricks);
     const uint32_t last = part.last - view.first_brick, room = static_cast<uint32_t>(decider_room.size / kBrickPoints);
     view.decided = {view.first_brick + (last > room ? last - room : 0), part.last};
   }
+  bool list(BrickRange r) const { return part.size() > 0 && part.first == r.first && part.last == r.last; }
   bool have(BrickRange r) const { return gathered.size() > 0 && gathered.first <= r.first && r.last <= gathered.last; }
   bool have_deciders() const { return view.decided.size() > 0; }
   // Steps of a thread that looks at all atoms and arcs of a row, and at an atom's caps.

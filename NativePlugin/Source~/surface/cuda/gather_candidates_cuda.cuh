@@ -376,6 +376,7 @@ void gather_candidates(E &executor, const CudaSlice &s, uint64_t *signs) {
   }
   candidates.longest_row = std::max({candidates.longest_row, kUsualRow, found.longest_row});
   candidates.gathered = {view.first_brick, slice.last};
+  candidates.part = slice;
 }
 
 }  // namespace gpu

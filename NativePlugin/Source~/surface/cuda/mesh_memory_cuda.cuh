@@ -76,7 +76,7 @@ class MeshMemory<CudaExecutor> {
     try {
       const DeviceGuard guard(executor_.device());
       if (!may_hand_back()) return;
-      for (cudaEvent_t event : {early_triangles_made_, triangles_made_, vertices_made_})
+      for (cudaEvent_t event : {triangles_made_, vertices_made_})
         if (event) cudaEventDestroy(event);
       cudaStreamSynchronize(executor_.stream_handle());  // kernels bring little meshes to memory that is ours
       if (copies_) {
@@ -173,21 +173,24 @@ class MeshMemory<CudaExecutor> {
   void note_triangles(CudaExecutor &executor) { note(executor, &triangles_made_); }
   // Whether triangles of a mesh go to the host while the rest of it is made: if it is handed out there as it is, and
   // large. Of one whose size is anticipated, there may be fewer.
-  bool sends_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) const {
+  bool may_send_triangles(const MeshMemoryView &mesh, MeshPurpose purpose) const {
     constexpr size_t kWorthAStream = size_t(1) << 13;  // triangles: 98 KB
     return to_host_ && purpose == MeshPurpose::kDelivered && mesh.triangles >= kWorthAStream;
   }
-  // The first of them, which what the executor has been given so far makes, about so many.
+  // The first of them, about as many as what the executor has been given so far makes: of those behind, which are not
+  // there yet, it does not matter what is brought.
   void bring_early_triangles(CudaExecutor &executor, const MeshMemoryView &mesh, size_t count) {
     make_room_for(mesh, mesh.shape);
-    note(executor, &early_triangles_made_);
-    bring_after(early_triangles_made_, brought_.indices, mesh.view.indices, count * 12);
+    note_triangles(executor);
+    bring_after(triangles_made_, brought_.indices, mesh.view.indices, count * 12);
     early_ = count;
   }
   // All the others; of those that were brought early, so many are right.
   void bring_triangles(const MeshMemoryView &mesh, MeshPurpose purpose, size_t right) {
-    if (!sends_triangles_ && !sends_triangles(mesh, purpose)) return;
-    if (!sends_triangles_) make_room_for(mesh, without_spare(mesh.shape));
+    if (!sends_triangles_) {
+      if (!may_send_triangles(mesh, purpose)) return;
+      make_room_for(mesh, without_spare(mesh.shape));
+    }
     const size_t first = std::min(early_, right);
     bring_after(triangles_made_, brought_.triangle(first), mesh.view.triangle(first), (mesh.triangles - first) * 12);
   }
@@ -319,7 +322,7 @@ class MeshMemory<CudaExecutor> {
   const cudaStream_t told_stream_;
   PooledMesh host_mesh_, device_mesh_;
   bool keep_ = false, to_host_ = false, leaves_owners_ = false;
-  cudaEvent_t early_triangles_made_ = nullptr, triangles_made_ = nullptr, vertices_made_ = nullptr;
+  cudaEvent_t triangles_made_ = nullptr, vertices_made_ = nullptr;
   size_t early_ = 0;  // triangles that were brought early
   cudaStream_t copies_ = nullptr;
   bool sends_triangles_ = false, sends_vertices_ = false;  // they are on their way, to here:

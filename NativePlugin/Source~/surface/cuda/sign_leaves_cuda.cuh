@@ -13,6 +13,7 @@ constexpr int kSignWarps = 2, kSignThreads = kSignWarps * kWarp;
 // Atoms and arcs of a leaf in shared memory, as a rule. More atoms are read from the row; of more arcs some are staged
 // at a time.
 constexpr int kLeafAtoms = 64, kLeafArcs = 64;
+static_assert(kLeafArcs >= kWarp, "so many are staged at a time");
 
 // Shared memory of one warp.
 struct LeafScratch {
@@ -156,11 +157,12 @@ static __global__ __launch_bounds__(kSignThreads,
   job.put(leaf, found);
 }
 
-// Evaluates the active leaves of a slice. deciders: whether what decides about their points is kept for thin walls.
+// Evaluates the active leaves of a slice, which was gathered last. deciders: whether what decides about their points is
+// kept for thin walls.
 template <class E>
 void evaluate_leaves(E &executor, const CudaSlice &s, bool deciders, uint64_t *signs) {
   CudaCandidates &candidates = s.candidates;
-  if (deciders) candidates.decide(executor, s.slice);
+  if (deciders) candidates.decide(executor);
   const SignJob job{s.features, s.bricks, CandidateReach::of(s.features.parameters), candidates.view, signs};
   const uint64_t steps = candidates.look_steps(s.features);
   if (candidates.view.row_shift == kRowOfLeaf)

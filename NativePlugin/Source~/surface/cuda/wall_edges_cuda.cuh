@@ -45,8 +45,8 @@ struct WallJob {
   }
 };
 
-// Where coordinates are coarse beside the steps of a walk it may not be. An edge between two slices is walked for lack
-// of knowledge, and would be a wall there that is none in a mesh made as a whole.
+// Where coordinates are coarse beside the steps of a walk it may not be. An edge between two slices that share
+// nothing is walked for lack of knowledge, and would be a wall there that is none in a mesh made as a whole.
 inline bool short_cuts_hold(const Lattice &lattice) {
   constexpr float kRounding = 0x1p-24f;
   const glm::ivec3 first = glm::abs(lattice.first_brick), last = glm::abs(lattice.first_brick + lattice.brick_count);

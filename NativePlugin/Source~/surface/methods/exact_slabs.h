@@ -42,8 +42,9 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
   // Each slab has kernels that wait for their last few items, which costs the more, the fewer vertices it has.
   constexpr uint32_t kMost = 8, kWorthASlab = 400000, kWorthIt = 1000000;
   Slabs slabs;
-  const bool goes_out_as_made = work.paints_early() && !work.settings.occlusion && !work.will_be_split &&
-                                work.settings.relaxation_steps <= 1 && work.purpose == MeshPurpose::kDelivered;
+  const bool goes_out_as_made = work.parameters.has_thin_walls() && work.paints_early() && !work.settings.occlusion &&
+                                !work.will_be_split && work.settings.relaxation_steps <= 1 &&
+                                work.purpose == MeshPurpose::kDelivered;
   if (!goes_out_as_made || !work.memory.goes_to_host() || !work.plan.single_slice || !bricks.table || !bricks.found ||
       !work.executor.foresee("mesh", bricks.found, MeshTotals{}, &slabs.room) || !fits_bases(bricks.count))
     return slabs;
@@ -78,10 +79,9 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   using B = Backend<Executor>;
   executor.hand_over();
   work.hand_out_others();
-  const bool has_walls = work.parameters.has_thin_walls();
   const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
   const Span<uint64_t> signs = executor.template allocate<uint64_t>(leaves);
-  const Span<uint64_t> marks = has_walls ? executor.template allocate_zeros<uint64_t>(leaves) : Span<uint64_t>{};
+  const Span<uint64_t> marks = executor.template allocate_zeros<uint64_t>(leaves);
   MeshLayout layout{};
   allocate_layout(executor, bricks.count, signs.data, &layout);
   layout.vertex_total = slabs.room.vertices;
@@ -99,7 +99,7 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   Candidates<Executor> candidates{};
   candidates.open(executor, work.parameters, {0, bricks.count});
   // Those that walls of a slab ask for, which look to both sides.
-  if (has_walls) candidates.keep_deciders(executor, bricks.count / slabs.count + 1 + 2 * slabs.near);
+  candidates.keep_deciders(executor, bricks.count / slabs.count + 1 + 2 * slabs.near);
   const auto vertex_words = [&](size_t vertices, size_t leaves) {
     return Candidates<Executor>::vertex_words(work.parameters, vertices, leaves);
   };
@@ -121,7 +121,6 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     B::evaluate_signs(executor, work_on(slabs.signs(slab)), signs.data);
   };
   const auto find_walls = [&](uint32_t slab) {
-    if (!has_walls) return;
     work.timer.begin("thin_walls");
     turn_to_slab(slab);
     B::mark_thin_walls(executor, work_on(slabs.range(slab)), signs.data, marks.data);
@@ -132,9 +131,8 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
     const BrickRange final_signs = slabs.newly_final(found, Slabs::kSigns),
                      emitted = slabs.newly_final(found, Slabs::kEmission);
     const size_t first_leaf = size_t(final_signs.first) * kLeavesPerBrick;
-    if (has_walls)
-      executor.for_each(size_t(final_signs.size()) * kLeavesPerBrick,
-                        AddMarks{marks.data + first_leaf, signs.data + first_leaf});
+    executor.for_each(size_t(final_signs.size()) * kLeavesPerBrick,
+                      AddMarks{marks.data + first_leaf, signs.data + first_leaf});
     count_cells(executor, bricks, layout, work.table.triangle_count, owned.data,
                 slabs.newly_final(found, Slabs::kCounts));
     executor.for_each(emitted.size() + size_t(1),

@@ -189,7 +189,7 @@ MeshMemoryView build_exact_surface(Work &work) {
     };
     uint32_t early = 0;
     if constexpr (Executor::kIsCuda && !Executor::kCounts)
-      if (layout.early_triangles > 0 && work.memory.sends_triangles(mesh, work.purpose)) {
+      if (layout.early_triangles > 0 && work.memory.may_send_triangles(mesh, work.purpose)) {
         early = static_cast<uint32_t>(early_bricks(bricks.count));
         emit_run({0, early});
         work.memory.bring_early_triangles(executor, mesh, static_cast<size_t>(layout.early_triangles));
