@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/changed_bytes.h"
 #include "io/io_fixture.h"
 #include "io/trajectory.h"
 
@@ -347,32 +348,9 @@ inline void expect_mutants_are_safe(const std::vector<std::string> &files, Traje
   std::mt19937 random(seed);
   int read = 0;
   for (int n = 0; n < count; ++n) {
-    std::string bytes = files[random() % files.size()];
-    for (uint32_t changes = 1 + random() % 4; changes != 0; --changes) {
-      const size_t at = random() % bytes.size();
-      switch (random() % 6) {
-        case 0:
-          bytes[at] = static_cast<char>(random());
-          break;
-        case 1:
-          bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
-          break;
-        case 2:
-          bytes[at] = static_cast<char>(random() % 2 ? 0xff : random() % 2 ? 0x7f : 0);
-          break;
-        case 3:  // a whole number of four bytes
-          for (size_t i = at / 4 * 4; i < std::min(at / 4 * 4 + 4, bytes.size()); ++i)
-            bytes[i] = static_cast<char>(random());
-          break;
-        case 4:
-          bytes.resize(at + 1);
-          break;
-        default:
-          bytes.insert(at, bytes.substr(at / 2, random() % 16));
-      }
-    }
     try {
-      const Trajectory trajectory = Trajectory::from_memory(std::move(bytes), format);
+      const Trajectory trajectory =
+          Trajectory::from_memory(changed_bytes(files[random() % files.size()], &random), format);
       ASSERT_GE(trajectory.frame_count(), 1u);
       ASSERT_GE(trajectory.atom_count(), 1u);
       Positions positions(3 * trajectory.atom_count());
