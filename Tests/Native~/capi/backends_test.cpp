@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <iterator>
+#include <random>
 
 using namespace surface_fixture;
 
@@ -75,6 +77,27 @@ TEST_F(Backends, MakeTheSameSurfaceOfManyAtoms) {
     }
   ASSERT_GE(atoms.size(), 16384u);
   expect_same(atoms, settings(1.0), 64 * 8);
+}
+
+// Of so few atoms hardly any lattice point is within rounding of the surface: a sign that one of them never looked at
+// would show.
+TEST_F(Backends, MakeTheSameMeshesOfFewAtoms) {
+  const Context cpu(2, 0, QSES_BACKEND_CPU), gpu(2, 0, QSES_BACKEND_CUDA);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> offset(-4, 4), radius(0.8, 3.5);
+  constexpr int kSets = 1500, kWithinRounding = 6;
+  const double spacings[] = {0.3, 0.5, 0.7, 1.0, 1.3, 2.0, 3.0};
+  int others = 0;
+  for (int set = 0; set < kSets; ++set) {
+    const size_t count = 2 + random() % 48;
+    const Atoms some = set % 3 == 0 ? Atoms().add(0, 0, 0, radius(random)) : cluster(count, random());
+    const double x = offset(random), y = offset(random), z = offset(random);
+    const Atoms atoms = shifted(some, x, y, z);
+    const qses_settings s = settings(spacings[random() % std::size(spacings)]);
+    const Surface a = compute(cpu, atoms, s), b = compute(gpu, atoms, s);
+    others += a.mesh.indices != b.mesh.indices ? 1 : 0;
+  }
+  EXPECT_LE(others, kWithinRounding);
 }
 
 TEST_F(Backends, MakeTheSameGridSurfaces) {

@@ -114,14 +114,20 @@ TEST(ExactSlabs, AreTheMeshByteForByte) {
   }
 }
 
-// Where spacings are wide, leaves have rows of their own: the same, ten times as large.
+// Where spacings are wide, leaves have rows of their own.
 TEST(ExactSlabs, MayHaveRowsOfLeaves) {
   REQUIRE_DEVICE();
-  Atoms atoms = scaled(rod(2), 10);
-  for (float &radius : atoms.radii) radius *= 10;
+  constexpr int kEdge = 26;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> off(-0.7, 0.7);
+  Atoms atoms;
+  for (int k = 0; k < kEdge * kEdge * kEdge; ++k) {
+    const double x = 9 * (k % kEdge) + off(random), y = 9 * (k / kEdge % kEdge) + off(random),
+                 z = 9 * (k / (kEdge * kEdge)) + off(random);
+    atoms.add(x, y, z, 2.4 + 0.1 * (k % 8));
+  }
   qses_settings s = fine_settings();
-  s.spacing *= 10;
-  s.probe_radius *= 10;
+  s.spacing = 1.25f;
   const Context context;
   const Frame first = frame_of(context, atoms, s);
   for (int frame = 1; frame < 4; ++frame) {

@@ -95,20 +95,23 @@ TEST(FollowingFrames, WithMoreBricksButNotMoreVertices) {
   expect_each_as_by_itself(frames, settings());
 }
 
-// As many triangles, but four times as many in the first bricks, or a fourth: those that a GPU has sent by then.
+// As many bricks and triangles, but seven times as many of these in the first bricks, or a seventh: those that a GPU
+// has sent by then. Of the balls in the middle of a brick there is one in each, of the others an eighth.
 TEST(FollowingFrames, WithMoreOrLessInTheFirstBricks) {
-  const auto full_at = [](bool the_end) {
+  const auto middles_first = [](bool first) {
     Atoms atoms;
-    for (int layer = 0; layer < 24; ++layer) {
-      const bool is_full = layer < 3;
-      for (int k = 0; k < 100; k += is_full ? 1 : 4)
-        atoms.add(6 * (k % 10), 6 * (k / 10), 6 * (the_end ? 23 - layer : layer), 1.7);
+    for (int k = 0; k < 14 * 14 * 8; ++k) {
+      const int layer = k / (14 * 14);
+      const double shift = (layer < 4) == first ? 2 : 0;
+      atoms.add(8 * (k % 14) + shift, 8 * (k / 14 % 14) + shift, 8 * layer + shift, 0.7);
     }
     return atoms;
   };
   std::vector<Atoms> frames;
-  for (bool the_end : {false, false, true, true, false, false, true}) frames.push_back(full_at(the_end));
-  expect_each_as_by_itself(frames, settings());
+  for (bool first : {true, true, false, false, true, true, false}) frames.push_back(middles_first(first));
+  const Surface surface = compute(frames[0], settings(0.5, 0.3));
+  EXPECT_EQ(surface.report.brick_count, 14 * 14 * 4 * (1 + 8)) << "not what is tested here";
+  expect_each_as_by_itself(frames, settings(0.5, 0.3));
 }
 
 // A circle around two large balls that many small ones cut: on the GPU its intervals are in memory.
