@@ -85,6 +85,15 @@ void expect_same(const Frame &frame, const Frame &expected) {
   EXPECT_EQ(frame.report.attempts, 1u);
 }
 
+// Once the context has made a frame, it makes more of the same.
+void expect_more_in_slabs(qses_context *context, const Atoms &atoms, const qses_settings &s, const Frame &first) {
+  for (int frame = 1; frame < 4; ++frame) {
+    const Frame next = frame_of(context, atoms, s);
+    expect_same(next, first);
+    EXPECT_GT(next.report.slice_count, 1u) << "not what is tested here";
+  }
+}
+
 TEST(ExactSlabs, AreTheMeshByteForByte) {
   REQUIRE_DEVICE();
   using Change = void (*)(qses_settings *);
@@ -105,11 +114,7 @@ TEST(ExactSlabs, AreTheMeshByteForByte) {
     const Context context;
     const Frame first = frame_of(context, atoms, s);
     EXPECT_EQ(first.report.slice_count, 1u);
-    for (int frame = 1; frame < 4; ++frame) {
-      const Frame next = frame_of(context, atoms, s);
-      expect_same(next, first);
-      EXPECT_GT(next.report.slice_count, 1u) << "not what is tested here";
-    }
+    expect_more_in_slabs(context, atoms, s, first);
     expect_same(frame_of(context, shifted(atoms, 0.1, 0, 0), s), alone(shifted(atoms, 0.1, 0, 0), s));
   }
 }
@@ -130,11 +135,7 @@ TEST(ExactSlabs, MayHaveRowsOfLeaves) {
   s.spacing = 1.25f;
   const Context context;
   const Frame first = frame_of(context, atoms, s);
-  for (int frame = 1; frame < 4; ++frame) {
-    const Frame next = frame_of(context, atoms, s);
-    expect_same(next, first);
-    EXPECT_GT(next.report.slice_count, 1u);
-  }
+  expect_more_in_slabs(context, atoms, s, first);
 }
 
 // A quarter of the bricks is full of small balls, the others have a smooth surface through them: two or three times as
@@ -151,11 +152,7 @@ TEST(ExactSlabs, MayBeUnevenlyFull) {
     s.probe_radius = 0.06f;
     const Context context;
     const Frame first = frame_of(context, atoms, s);
-    for (int frame = 1; frame < 4; ++frame) {
-      const Frame next = frame_of(context, atoms, s);
-      expect_same(next, first);
-      EXPECT_GT(next.report.slice_count, 1u);
-    }
+    expect_more_in_slabs(context, atoms, s, first);
   }
 }
 
