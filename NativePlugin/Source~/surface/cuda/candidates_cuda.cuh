@@ -131,7 +131,7 @@ __device__ __forceinline__ Vec3<float> leaf_center(const Vec3<float> &low, int l
 
 // What the stages of a slice share: rows of atoms and arcs, and its active leaves.
 struct CudaCandidates {
-  BrickRange gathered{0, 0}, part{0, 0};  // all, and the last part, whose leaves are listed
+  BrickRange part{0, 0};  // gathered last, whose leaves are listed; with all bricks of the view before it
   gpu::CandidateView view{};
   gpu::CandidateRow *brick_rows = nullptr, *leaf_rows = nullptr;
   Span<uint32_t> decider_room{};  // of view.deciders: so many bricks are decided at a time; none: it is allocated
@@ -170,7 +170,7 @@ struct CudaCandidates {
     view.decided = {view.first_brick + (last > room ? last - room : 0), part.last};
   }
   bool list(BrickRange r) const { return part.size() > 0 && part.first == r.first && part.last == r.last; }
-  bool have(BrickRange r) const { return gathered.size() > 0 && gathered.first <= r.first && r.last <= gathered.last; }
+  bool have(BrickRange r) const { return part.size() > 0 && view.first_brick <= r.first && r.last <= part.last; }
   bool have_deciders() const { return view.decided.size() > 0; }
   // Steps of a thread that looks at all atoms and arcs of a row, and at an atom's caps.
   uint64_t look_steps(const FeatureView &features) const { return 64 + 2 * uint64_t(longest_row) + features.most_caps; }

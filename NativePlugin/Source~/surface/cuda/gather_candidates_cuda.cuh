@@ -296,7 +296,7 @@ CandidateCounters fill_rows(E &executor, const char *name, ListRoom atoms, ListR
     view->arc_leaves = executor.template allocate<uint8_t>(arcs.items).data;
     const CandidateCounters most{atoms.items, arcs.items, most_leaves, 0};
     CandidateCounters foreseen = most;
-    if (!executor.foresee(name, counters, most, &foreseen)) foreseen = most;
+    executor.foresee(name, counters, most, &foreseen);
     launch(RowRoom{counters, atoms.items, arcs.items, foreseen.leaves});
     const CandidateCounters found = executor.expect(name, counters, most);
     const bool atoms_fit = atoms.holds(found.atoms), arcs_fit = arcs.holds(found.arcs);
@@ -375,7 +375,6 @@ void gather_candidates(E &executor, const CudaSlice &s, uint64_t *signs) {
         });
   }
   candidates.longest_row = std::max({candidates.longest_row, kUsualRow, found.longest_row});
-  candidates.gathered = {view.first_brick, slice.last};
   candidates.part = slice;
 }
 

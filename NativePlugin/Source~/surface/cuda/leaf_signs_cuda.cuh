@@ -2,6 +2,7 @@
 // GPU: what is done alike for the signs of a leaf, whether a warp finds them or a block.
 #pragma once
 
+#include "parallel/cuda_async_copy.cuh"
 #include "surface/cuda/covering_caps_cuda.cuh"
 #include "surface/cuda/deepest_atoms_cuda.cuh"
 
@@ -17,9 +18,8 @@ struct ListedArc {
 struct SignLeaf {
   uint32_t slot;
   CandidateRow row;
-  const uint32_t *atoms, *arcs;
-  const uint8_t *arc_leaves;
-  glm::ivec3 first;  // lattice point
+  const uint8_t *arc_leaves;  // of the row's arcs
+  glm::ivec3 first;           // lattice point
   Vec3<float> center;
 
   __device__ __forceinline__ int number() const { return static_cast<int>(slot % kLeavesPerBrick); }
@@ -28,7 +28,7 @@ struct SignLeaf {
   // That of each lane, from place k0 on.
   __device__ __forceinline__ ListedArc listed_arc(uint32_t k0) const {
     const uint32_t k = k0 + static_cast<uint32_t>(lane_id());
-    return k < row.arc_count ? ListedArc{__ldg(arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
+    return k < row.arc_count ? ListedArc{__ldg(row.arcs + k), __ldg(arc_leaves + k)} : ListedArc{0, 0};
   }
 };
 
@@ -67,8 +67,6 @@ struct SignJob {
     SignLeaf leaf;
     leaf.slot = view.leaf_list[place];
     leaf.row = view.row_of(leaf.slot);
-    leaf.atoms = leaf.row.atoms;
-    leaf.arcs = leaf.row.arcs;
     leaf.arc_leaves = view.arc_leaves + (leaf.row.arcs - view.arcs);
     const Lattice &lattice = bricks.lattice;
     leaf.first = lattice.first_point(bricks.place(view.first_brick + leaf.slot / kLeavesPerBrick));

@@ -127,7 +127,7 @@ void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWo
   const uint64_t look = vertex_steps(features, candidates.longest_row);
   // Lanes for each of few vertices, or of such that have much to look at; so many for a multiprocessor at most. Arcs,
   // of which there are more to look at, are worth more lanes.
-  constexpr size_t kFew = 4, kMostThreads = 3072, kMostOfLongLists = 8192, kMore = 8, kMostForArcs = 2048;
+  constexpr size_t kSome = 2, kFew = 4, kMostThreads = 3072, kMostOfLongLists = 8192, kMore = 8, kMostForArcs = 2048;
   const bool have_much = job.list_words >= kLongList, have_very_much = job.list_words >= 4 * kLongList;
   const auto is_room_for = [&](size_t lanes, size_t most) {
     return job.count * lanes <= executor.multiprocessors() * most;
@@ -140,7 +140,7 @@ void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWo
   };
   if (are_very_few)
     launch_first("project_on_atoms", kWarp, project_on_atoms_kernel<kWarp>);
-  else if (are_few)
+  else if (have_very_much || are_few)
     launch_first("project_on_atoms", kFew, project_on_atoms_kernel<kFew>);
   else
     launch_first("project_on_atoms", 1, project_on_atoms_kernel<1>);
@@ -148,8 +148,10 @@ void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWo
     launch_first("project_on_arcs", kWarp, project_on_arcs_kernel<kWarp>);
   else if (have_very_much || is_room_for(kMore, kMostForArcs))
     launch_first("project_on_arcs", kMore, project_on_arcs_kernel<kMore>);
-  else if (have_much || are_few)
+  else if (are_few)
     launch_first("project_on_arcs", kFew, project_on_arcs_kernel<kFew>);
+  else if (have_much)
+    launch_first("project_on_arcs", kSome, project_on_arcs_kernel<kSome>);
   else
     launch_first("project_on_arcs", 1, project_on_arcs_kernel<1>);
   // As a rule few vertices are left: how many is asked if few launches can't place as many as there are.

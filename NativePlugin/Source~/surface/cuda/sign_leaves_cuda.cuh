@@ -46,7 +46,7 @@ static __global__ __launch_bounds__(kSignThreads,
   // Those that can be deepest at one of its points; what there is no room for is left out.
   int atom_count = 0;
   const DeepestAtom best = job.choose_atoms(
-      leaf, row.atom_count, [&](uint32_t k) { return __ldg(leaf.atoms + k); },
+      leaf, row.atom_count, [&](uint32_t k) { return __ldg(row.atoms + k); },
       [&](bool chosen, const Sphere &ball, uint32_t number) {
         const int at = append_place(chosen, &atom_count);
         if (chosen && at < kLeafAtoms) {
@@ -63,7 +63,7 @@ static __global__ __launch_bounds__(kSignThreads,
     const int at = append_place(near, &arc_count);
     if (near && at < kLeafArcs) {
       scratch.arc_number[at] = arc.number;
-      scratch.arc[at] = load(f.arcs + arc.number);
+      begin_copy(scratch.arc + at, f.arcs + arc.number);
     }
   };
   if (kind == LeafKind::kMixed) {
@@ -102,7 +102,7 @@ static __global__ __launch_bounds__(kSignThreads,
         if (deepest[c] > reach.least_depth) atom[c] = scratch.atom_number[atom[c]];
     } else {
       for (uint32_t k = 0; k < row.atom_count; ++k) {
-        const uint32_t i = __ldg(leaf.atoms + k);
+        const uint32_t i = __ldg(row.atoms + k);
         meet_ball(load(f.atoms.items + i), i);
       }
     }
@@ -117,6 +117,8 @@ static __global__ __launch_bounds__(kSignThreads,
     }
     __syncwarp();
     if (__any_sync(kFullWarp, any_open)) {
+      wait_for_copies();
+      __syncwarp();
       float nearest[kLanePoints];
 #pragma unroll
       for (int c = 0; c < kLanePoints; ++c) nearest[c] = kFarAway;
@@ -144,6 +146,7 @@ static __global__ __launch_bounds__(kSignThreads,
         for (uint32_t k0 = 0; k0 < row.arc_count; k0 += kWarp) {
           arc_count = 0;
           stage_arcs(leaf.listed_arc(k0));
+          wait_for_copies();
           __syncwarp();
           meet_arcs(arc_count);
           __syncwarp();

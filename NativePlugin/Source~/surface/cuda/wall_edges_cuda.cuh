@@ -148,19 +148,23 @@ __device__ __forceinline__ NearestProbe decided_probe(const FeatureView &f, uint
   return {y.position, y.distance};
 }
 
-// A warp takes a run of leaves, shorter where the GPU has room for more warps, and in a round as many of the next ones
-// as have no more than so many first ends together.
+// A warp takes a run of leaves, shorter where the GPU has room for more warps, and in a round as many of their next
+// first ends, of which the last ones of a leaf may be left to the next round.
 constexpr int kRoundStarts = 64, kRoundLeaves = 16;
 constexpr uint32_t kMostWallLeaves = 12;
 
-// The next leaves; a lane for each.
+// A lane for each of the next leaves.
 struct WallRound {
-  int leaves, starts;  // how many, and how many first ends
+  int starts;  // how many first ends
   uint32_t slot;
   uint64_t points;  // first ends
   int starts_with;  // of the leaves before, and its own
+  uint32_t next;    // leaf of the next round
+  int taken;        // of its first ends, by this round or before
 
-  __device__ __forceinline__ WallRound(const WallJob &job, uint32_t first, uint32_t last) : slot(0), points(0) {
+  // Of leaves first to last, of the first of which so many first ends were taken before.
+  __device__ __forceinline__ WallRound(const WallJob &job, uint32_t first, uint32_t last, int taken_before)
+      : slot(0), points(0) {
     const uint32_t k = first + static_cast<uint32_t>(lane_id());
     const bool on = lane_id() < kRoundLeaves && k < last;
     if (on) {
@@ -168,9 +172,13 @@ struct WallRound {
 #pragma unroll
       for (int s = 0; s < kWallSteps; ++s) points |= job.edges_of(slot)[s];
     }
+    if (taken_before > 0 && lane_id() == 0) points &= ~uint64_t(0) << nth_bit64(points, taken_before);
     starts_with = warp_inclusive_sum(popcount64(points), lane_id());
-    leaves = __popc(__ballot_sync(kFullWarp, on && starts_with <= kRoundStarts));
-    starts = __shfl_sync(kFullWarp, starts_with, leaves - 1);
+    const int all = __shfl_sync(kFullWarp, starts_with, kWarp - 1),
+              whole = __popc(__ballot_sync(kFullWarp, on && starts_with <= kRoundStarts));
+    starts = all < kRoundStarts ? all : kRoundStarts;
+    next = first + static_cast<uint32_t>(whole);
+    taken = starts - __shfl_sync(kFullWarp, starts_with, whole - 1);
   }
 };
 static_assert(kRoundStarts >= 64, "there is room for the first ends of any leaf");
@@ -206,16 +214,12 @@ __device__ __forceinline__ uint32_t uncovered_steps(const WallJob &job, const Wa
   scratch->probe[n] = make_float4(probe.center.x, probe.center.y, probe.center.z, probe.distance);
   scratch->decider[n] = decider;
   if (probe.distance > f.parameters.depth) return 0;
-  const float depth2 = f.parameters.depth * f.parameters.depth;
   // Halves of the words of its leaf.
   const uint32_t *const edges = reinterpret_cast<const uint32_t *>(job.edges_of(start.slot)) + start.bit / 32;
-  uint32_t left = 0;
+  uint32_t listed = 0;
 #pragma unroll
-  for (int s = 0; s < kWallSteps; ++s) {
-    const bool covered = length_squared(second_offset(x - probe.center, s, job.reach.spacing)) < depth2;
-    left |= covered ? 0u : (edges[2 * s] >> start.bit % 32 & 1) << s;
-  }
-  return left;
+  for (int s = 0; s < kWallSteps; ++s) listed |= (edges[2 * s] >> start.bit % 32 & 1) << s;
+  return listed & ~covered_steps(f.parameters, x - probe.center);
 }
 
 // Does the probe of an end, when it rolls on along its arc or atom to where it is nearest to the middle of a rest,
@@ -328,7 +332,7 @@ static __global__ __launch_bounds__(kWallThreads,
   if (end <= first) return;
   if constexpr (kByBlocks) {
     for (uint32_t own = first + blockIdx.x; own < end; own += gridDim.x) {
-      const uint32_t walks = find_edges_to_walk(job, WallRound(job, own, own + 1), warp, kWallWarps, &scratch);
+      const uint32_t walks = find_edges_to_walk(job, WallRound(job, own, own + 1, 0), warp, kWallWarps, &scratch);
       list_walks_of_leaf(job, walks, scratch);
       __syncthreads();  // neither scratch nor words are looked at any more
     }
@@ -337,11 +341,13 @@ static __global__ __launch_bounds__(kWallThreads,
                    share = even < kMostWallLeaves ? even : kMostWallLeaves;
     for (uint32_t own = first + (blockIdx.x * kWallWarps + warp) * share; own < end; own += warps * share) {
       const uint32_t own_end = own + share < end ? own + share : end;
+      int taken = 0;
       for (uint32_t next = own; next < own_end;) {
-        const WallRound round(job, next, own_end);
+        const WallRound round(job, next, own_end, taken);
         const uint32_t walks = find_edges_to_walk(job, round, 0, 1, &scratch);
         if (walks > 0) list_walks(job, walks, scratch);
-        next += static_cast<uint32_t>(round.leaves);
+        next = round.next;
+        taken = round.taken;
         __syncwarp();  // the scratch is not looked at any more
       }
     }

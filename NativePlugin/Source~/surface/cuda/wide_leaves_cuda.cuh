@@ -63,7 +63,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
   const uint32_t left = row.atom_count % kWideSignThreads,
                  own = row.atom_count / kWideWarps / kWarp * kWarp + min(left - min(left, first), uint32_t(kWarp));
   const DeepestAtom deepest_of_warp = job.choose_atoms(
-      leaf, own, [&](uint32_t k) { return __ldg(leaf.atoms + k / kWarp * kWideSignThreads + first + k % kWarp); },
+      leaf, own, [&](uint32_t k) { return __ldg(row.atoms + k / kWarp * kWideSignThreads + first + k % kWarp); },
       [&](bool chosen, const Sphere &ball, uint32_t number) {
         const uint32_t at = append_place_of_all(chosen, &scratch.atoms);
         if (chosen && at < kWideAtoms) {
@@ -85,7 +85,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
     const uint32_t at = append_place_of_all(near, &scratch.arcs);
     if (near && at < kWideArcs) {
       scratch.arc_number[at] = arc.number;
-      scratch.arc[at] = load(f.arcs + arc.number);
+      begin_copy(scratch.arc + at, f.arcs + arc.number);
     }
   };
   if (kind == LeafKind::kMixed) {
@@ -119,7 +119,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
         meet_ball(scratch.atom[k], scratch.atom_number[k]);
     } else {
       for (uint32_t k = static_cast<uint32_t>(warp); k < row.atom_count; k += kWideWarps) {
-        const uint32_t i = __ldg(leaf.atoms + k);
+        const uint32_t i = __ldg(row.atoms + k);
         meet_ball(load(f.atoms.items + i), i);
       }
     }
@@ -134,6 +134,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
       const unsigned covered = __ballot_sync(kFullWarp, covers);
       if (lane == 0 && covered) atomicOr(&scratch.covered[c], covered);
     }
+    wait_for_copies();
     __syncthreads();
 #pragma unroll
     for (int c = 0; c < kLanePoints; ++c) {
@@ -161,6 +162,7 @@ static __global__ __launch_bounds__(kWideSignThreads,
           if (threadIdx.x == 0) scratch.arcs = 0;
           __syncthreads();
           if (warp < kWideArcs / kWarp) stage_arcs(leaf.listed_arc(k0 + first));
+          wait_for_copies();
           __syncthreads();
           meet_arcs(scratch.arcs);
         }

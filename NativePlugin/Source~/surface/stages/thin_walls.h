@@ -134,12 +134,18 @@ QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candi
 QSES_FN bool probe_covers(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x) {
   return probe.distance > p.depth || length_squared(x - probe.center) < p.depth * p.depth;
 }
-// How far the second end of an edge is from where the first one is by so much.
-template <class T>
-QSES_FN Vec3<T> second_offset(const Vec3<T> &first, int step, float spacing) {
-  const glm::ivec3 s = wall_step(step);
-  const auto moved = [&](const T &x, int by) { return by == 0 ? x : x + T(by > 0 ? spacing : -spacing); };
-  return {moved(first.x, s.x), moved(first.y, s.y), moved(first.z, s.z)};
+// The steps from a first end to points that lie in the ball of a probe, a bit for each. from_probe: to the first end.
+QSES_FN uint32_t covered_steps(const SurfaceParameters &p, const Vec3<float> &from_probe) {
+  // |v + h s|^2 = |v|^2 + 2 h v s + h^2 s^2
+  const float h = p.spacing, left = p.depth * p.depth - length_squared(from_probe), left_axis = left - h * h,
+              left_diagonal = left_axis - h * h;
+  const Vec3<float> twice = from_probe * (2.f * h);
+  const float along[kWallSteps] = {twice.x,           twice.y,           twice.z,
+                                   twice.x + twice.y, twice.x - twice.y, twice.x + twice.z,
+                                   twice.x - twice.z, twice.y + twice.z, twice.y - twice.z};
+  uint32_t covered = 0;
+  for (int k = 0; k < kWallSteps; ++k) covered |= along[k] < (k < 3 ? left_axis : left_diagonal) ? 1u << k : 0u;
+  return covered;
 }
 
 // How far from x, which it covers, in a direction of length 1, the ball of a probe ends.
