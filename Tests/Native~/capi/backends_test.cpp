@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <random>
@@ -79,25 +80,73 @@ TEST_F(Backends, MakeTheSameSurfaceOfManyAtoms) {
   expect_same(atoms, settings(1.0), 64 * 8);
 }
 
-// Of so few atoms hardly any lattice point is within rounding of the surface: a sign that one of them never looked at
-// would show.
-TEST_F(Backends, MakeTheSameMeshesOfFewAtoms) {
-  const Context cpu(2, 0, QSES_BACKEND_CPU), gpu(2, 0, QSES_BACKEND_CUDA);
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> offset(-4, 4), radius(0.8, 3.5);
-  constexpr int kSets = 1500, kWithinRounding = 6;
-  const double spacings[] = {0.3, 0.5, 0.7, 1.0, 1.3, 2.0, 3.0};
-  int others = 0;
-  for (int set = 0; set < kSets; ++set) {
-    const size_t count = 2 + random() % 48;
-    const Atoms some = set % 3 == 0 ? Atoms().add(0, 0, 0, radius(random)) : cluster(count, random());
-    const double x = offset(random), y = offset(random), z = offset(random);
-    const Atoms atoms = shifted(some, x, y, z);
-    const qses_settings s = settings(spacings[random() % std::size(spacings)]);
-    const Surface a = compute(cpu, atoms, s), b = compute(gpu, atoms, s);
-    others += a.mesh.indices != b.mesh.indices ? 1 : 0;
+// Two balls whose inflated spheres meet in a circle so short that it is one arc.
+Atoms hardly_meeting(std::mt19937 &random) {
+  std::uniform_real_distribution<double> radius(0.8, 3.5), of_circle(0.05, 0.3);
+  const double r = radius(random), q = radius(random), c = of_circle(random), probe = 1.4;
+  const auto to_circle = [&](double ball) { return std::sqrt((ball + probe) * (ball + probe) - c * c); };
+  return turned(Atoms().add(0, 0, 0, r).add(0, 0, to_circle(r) + to_circle(q), q));
+}
+
+// Balls anywhere in a box, as crowded as no molecule's.
+Atoms crowd(size_t count, double x, double y, double z, double least, double most, std::mt19937 &random) {
+  std::uniform_real_distribution<double> unit(-0.5, 0.5), radius(least, most);
+  Atoms atoms;
+  for (size_t i = 0; i < count; ++i) {
+    const double at_x = x * unit(random), at_y = y * unit(random), at_z = z * unit(random);
+    atoms.add(at_x, at_y, at_z, radius(random));
   }
+  return atoms;
+}
+
+// How many of so many sets of few atoms, atoms_of(set), have meshes that are connected differently. Of so few hardly
+// any lattice point is within rounding of the surface: a sign that one of the back ends never looked at would show.
+template <class AtomsOf>
+int other_meshes(int sets, std::mt19937 &random, const AtomsOf &atoms_of) {
+  const Context cpu(2, 0, QSES_BACKEND_CPU), gpu(2, 0, QSES_BACKEND_CUDA);
+  const double spacings[] = {0.3, 0.5, 0.7, 1.0, 1.3, 2.0, 3.0};
+  std::uniform_real_distribution<double> offset(-4, 4);
+  int others = 0;
+  for (int set = 0; set < sets; ++set) {
+    const Atoms some = atoms_of(set);
+    const double x = offset(random), y = offset(random), z = offset(random);
+    const qses_settings s = settings(spacings[random() % std::size(spacings)]);
+    const Atoms atoms = shifted(some, x, y, z);
+    others += compute(cpu, atoms, s).mesh.indices != compute(gpu, atoms, s).mesh.indices ? 1 : 0;
+  }
+  return others;
+}
+
+TEST_F(Backends, MakeTheSameMeshesOfFewAtoms) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> radius(0.8, 3.5);
+  const int others = other_meshes(2000, random, [&](int set) {
+    if (set % 4 == 0) return Atoms().add(0, 0, 0, radius(random));
+    if (set % 4 == 1) return hardly_meeting(random);
+    const size_t count = 2 + random() % 48;
+    return cluster(count, static_cast<unsigned>(random()));
+  });
+  constexpr int kWithinRounding = 6;
   EXPECT_LE(others, kWithinRounding);
+}
+
+// More atoms matter to a leaf than a warp looks at together.
+TEST_F(Backends, MakeTheSameMeshesOfCrowdedAtoms) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> extent(3, 8);
+  const int others = other_meshes(400, random, [&](int) {
+    const double x = extent(random), y = extent(random), z = extent(random);
+    return crowd(100 + random() % 400, x, y, z, 0.3, 1.5, random);
+  });
+  constexpr int kWithinRounding = 4;
+  EXPECT_LE(others, kWithinRounding);
+}
+
+// So many vertices that each is found by one lane, which remembers fewer arcs than there are near some of them.
+TEST_F(Backends, MakeTheSameSurfaceOfManyCrowdedAtoms) {
+  std::mt19937 random(3);
+  const Atoms atoms = crowd(40000, 120, 120, 2, 0.4, 0.6, random);
+  expect_same(atoms, settings(0.7, 0.6), 64);
 }
 
 TEST_F(Backends, MakeTheSameGridSurfaces) {
@@ -109,10 +158,9 @@ TEST_F(Backends, MakeTheSameGridSurfaces) {
   }
 }
 
-TEST_F(Backends, GpuGivesTheSameBytesAlways) {
-  const Atoms atoms = cluster(3000, 7);
+// The same bytes, whatever the slices.
+void expect_same_bytes_in_slices(const Atoms &atoms, qses_settings s) {
   const Context gpu(2, 0, QSES_BACKEND_CUDA);
-  qses_settings s = settings();
   s.patch_types = 1;
   const Surface first = compute(gpu, atoms, s);
   EXPECT_EQ(mesh_checks::manifold_fault(first.mesh), "");
@@ -131,6 +179,22 @@ TEST_F(Backends, GpuGivesTheSameBytesAlways) {
     EXPECT_EQ(again.mesh.indices, first.mesh.indices);
     EXPECT_EQ(again.patches, first.patches);
     EXPECT_EQ(again.report.area, first.report.area);
+  }
+}
+
+TEST_F(Backends, GpuGivesTheSameBytesAlways) { expect_same_bytes_in_slices(cluster(3000, 7), settings()); }
+
+// Where coordinates are coarse beside the steps by which walls are looked for.
+TEST_F(Backends, GpuGivesTheSameBytesFarAway) {
+  Atoms atoms = cluster(1000, 7);
+  const Atoms other = shifted(cluster(1000, 8), 60000, 31000, -47000);
+  for (size_t i = 0; i < other.size(); ++i) {
+    const auto c = other.center(i);
+    atoms.add(c[0], c[1], c[2], static_cast<double>(other.radii[i]));
+  }
+  for (double spacing : {0.35, 0.5, 1.0}) {
+    SCOPED_TRACE(spacing);
+    expect_same_bytes_in_slices(atoms, settings(spacing));
   }
 }
 
