@@ -47,7 +47,9 @@ fi
 say() { echo "==== $*, after $((SECONDS / 60)) min"; }
 
 # What has nothing to do with the platform or the back end is tested with the first preset.
-others=(--exclude-regex '^(check_.*|configure|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|page_paths|release_scripts|rooms|script_help|setup|shaders.*|test_in_unity)$')
+others='check_.*|configure|consumer_add_subdirectory|make_package_.*|measure_scripts|page_browser_test|page_paths|release_scripts|rooms|script_help|setup|shaders.*|test_in_unity'
+# Long tests of the CPU back end, whose source is the same with CUDA; those of the GPU are others, or end in _on_cuda.
+of_cpu='(bricks_test|determinism_test|exact_ses_test|memory_test|property_test)/.*'
 
 for preset in "${presets[@]}"; do
   options=()
@@ -61,7 +63,7 @@ for preset in "${presets[@]}"; do
     echo "No CUDA device here: tests of the CUDA back end are skipped."
   fi
   left_out=()
-  if [ "$preset" != cpu ]; then left_out=("${others[@]}"); fi
+  if [ "$preset" = cuda ]; then left_out=(--exclude-regex "^($others|$of_cpu)\$"); fi
   ctest --preset "$preset" --parallel "$(nproc)" "${left_out[@]}"
   # Those of the CPU back end, which is the same in all of them. With another compiler nothing is judged, which is then said.
   if [ "$preset" = cpu ]; then
@@ -122,7 +124,7 @@ if [ "$with_windows" = yes ]; then
     cmake --build --preset "$windows"
   fi
   say "$windows: test"
-  if ! ctest --preset "$windows" --parallel "$(nproc)" "${others[@]}"; then
+  if ! ctest --preset "$windows" --parallel "$(nproc)" --exclude-regex "^($others)\$"; then
     say "$windows: test what failed once more"
     start_wine
     ctest --preset "$windows" --rerun-failed
