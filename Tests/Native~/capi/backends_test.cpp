@@ -149,6 +149,17 @@ TEST_F(Backends, MakeTheSameSurfaceOfManyCrowdedAtoms) {
   expect_same(atoms, settings(0.7, 0.6), 64);
 }
 
+// Between each four balls of a sheet the probe leaves a wall 0.3 Å thick, from both sides. There are so many that a
+// warp looks at several leaves.
+TEST_F(Backends, MakeTheSameSurfaceOfManyThinWalls) {
+  constexpr double kRadius = 1.5, kProbe = 1.4, kHalfWall = 0.15, kHeight = kProbe + kHalfWall;
+  const double step = std::sqrt(2 * ((kRadius + kProbe) * (kRadius + kProbe) - kHeight * kHeight));
+  Atoms sheet;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) sheet.add(step * i, step * j, 0, kRadius);
+  expect_same(turned(sheet), settings(0.5, kProbe), 16);
+}
+
 TEST_F(Backends, MakeTheSameGridSurfaces) {
   qses_settings s = settings();
   s.method = QSES_METHOD_GRID;

@@ -61,10 +61,7 @@ TEST(JobStates, ALevelUnderWayIsGivenUpForTheNextJob) {
 TEST(JobStates, AnEstimateThatCanNotBeWrittenDoesNotWait) {
   Gate gate;
   const Context context;
-  set_atoms(context, block(4));
-  gate.place_in(context);
-  begin(context, settings(0.5));
-  gate.wait_until_reached();
+  begin_held(gate, context, block(4), settings(0.5));
   qses_size_estimate unprepared{};
   EXPECT_EQ(qses_estimate(context, nullptr, &unprepared), QSES_INVALID_ARGUMENT);
   gate.open();
@@ -74,10 +71,7 @@ TEST(JobStates, AnEstimateThatCanNotBeWrittenDoesNotWait) {
 TEST(JobStates, CancelTakesBackWhatWaits) {
   Gate gate;
   const Context context;
-  set_atoms(context, block(20));
-  gate.place_in(context);
-  begin(context, settings(0.5), 1);
-  gate.wait_until_reached();
+  begin_held(gate, context, block(20), settings(0.5), 1);
   begin(context, settings(0.5), 2);
   expect_ok(qses_cancel(context));
   gate.open();
@@ -92,10 +86,7 @@ TEST(JobStates, CancelTakesBackWhatWaits) {
 TEST(JobStates, AComputeThatNeverHasItsTurnWasRequested) {
   Gate gate;
   const Context context;
-  set_atoms(context, block(20));
-  gate.place_in(context);
-  begin(context, settings(0.5), 1);
-  gate.wait_until_reached();
+  begin_held(gate, context, block(20), settings(0.5), 1);
   std::atomic<bool> has_ended{false};
   std::thread other([&] {
     qses_settings s = settings(0.2);
@@ -140,10 +131,7 @@ TEST(JobStates, NothingIsLeftOfAFailure) {
   begin(context, settings(0.3));
   wait_for_all(context);
   ASSERT_EQ(poll(context).state, QSES_JOB_FAILED);
-  gate.place_in(context);
-  set_atoms(context, cluster(50, 4));
-  begin(context, settings(1.0));
-  gate.wait_until_reached();
+  begin_held(gate, context, cluster(50, 4), settings(1.0));
   const qses_progress next = poll(context);
   EXPECT_EQ(next.state, QSES_JOB_RUNNING);
   EXPECT_EQ(next.status, QSES_OK);

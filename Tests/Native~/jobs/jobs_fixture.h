@@ -73,4 +73,13 @@ class Gate {
   std::atomic<bool> is_reached_{false}, is_open_{false};
 };
 
+// A job that the gate holds when this returns.
+inline void begin_held(Gate &gate, qses_context *context, const Atoms &atoms, const qses_settings &s,
+                       uint32_t frame = 0) {
+  set_atoms(context, atoms);
+  gate.place_in(context);
+  begin(context, s, frame);
+  gate.wait_until_reached();
+}
+
 }  // namespace jobs_fixture
