@@ -174,6 +174,18 @@ TEST(Components, AddUpToTheReport) {
         s.measure = 0;
         expect_same(components_of(context, s), outward);
       }
+    // Measured along its triangles, and along its normals.
+    qses_settings grid = with_components(), gaussian = with_components();
+    grid.method = QSES_METHOD_GRID;
+    gaussian.surface = QSES_SURFACE_GAUSSIAN;
+    for (qses_settings s : {grid, gaussian}) {
+      const qses_mesh m = compute_view(context, s);
+      const qses_report report = report_of(context);
+      expect_to_add_up(components_of(m), m, report);
+      s.components = 0;
+      compute_view(context, s);
+      EXPECT_NEAR(report_of(context).area, report.area, 1e-11 * report.area);
+    }
   }
   EXPECT_GT(components_of(context, with_components(settings(0.5, 1.4, QSES_SURFACE_VDW))).size(), 300u);
 }

@@ -124,6 +124,22 @@ TEST(AtomAreas, AddUpToTheArea) {
   expect_error(qses_compute(context, &s, nullptr), QSES_INVALID_ARGUMENT, {"settings.atom_areas", "GRID"});
 }
 
+TEST(AtomAreas, AreTheSameWhereTheSurfaceIsNotMeasured) {
+  const Context context;
+  const Atoms atoms = crambin();
+  set_atoms(context, atoms);
+  for (qses_surface surface : {QSES_SURFACE_SES, QSES_SURFACE_SAS, QSES_SURFACE_VDW, QSES_SURFACE_GAUSSIAN})
+    for (qses_delivery delivery : {QSES_DELIVERY_HOST, QSES_DELIVERY_NONE}) {
+      qses_settings s = with_areas(surface, delivery);
+      const std::vector<double> measured = areas_of(compute_view(context, s));
+      EXPECT_EQ(measured.size(), atoms.size());
+      s.measure = 0;
+      EXPECT_EQ(areas_of(compute_view(context, s)), measured) << surface << delivery;
+      EXPECT_EQ(report_of(context).measured_by, QSES_MEASURED_BY_NOTHING);
+      EXPECT_EQ(report_of(context).area, 0);
+    }
+}
+
 // A third of each triangle to each corner's owner, against the mesh that came.
 TEST(AtomAreas, OfTheSesAreThoseOfItsTriangles) {
   const Context context;

@@ -189,6 +189,37 @@ TEST_F(LadderLevels, AreAsByThemselves) {
   }
 }
 
+// Where their spacings divide the coarsest one, all levels have the lattice of their spacing alone. The frame is that
+// of the coarsest, so that the others are the same but for rounding.
+TEST_F(LadderLevels, ThatDivideTheCoarsestAreThoseOfTheirSpacing) {
+  const Atoms atoms = shifted(cluster(400, 5), 11.3, -21.7, 37.9);
+  qses_settings s = settings(0.5);
+  s.level_count = 2;
+  s.levels[0] = 2.f;
+  s.levels[1] = 1.f;
+  const auto engine = make_engine();
+  Levels levels;
+  compute(*engine, atoms, s, &levels);
+  ASSERT_EQ(levels.meshes.size(), 3u);
+  for (const quickses::FinishedMesh &level : levels.meshes) {
+    const qses_mesh &of_ladder = level.on_host;
+    SCOPED_TRACE(of_ladder.spacing);
+    qses_settings of_level = s;
+    of_level.level_count = 0;
+    of_level.spacing = of_ladder.spacing;
+    Levels alone;
+    compute(*engine, atoms, of_level, &alone);
+    ASSERT_EQ(alone.meshes.size(), 1u);
+    if (of_ladder.spacing == s.levels[0]) expect_same(level, alone.meshes[0]);
+    const qses_mesh &m = alone.meshes[0].on_host;
+    ASSERT_EQ(of_ladder.vertex_count, m.vertex_count);
+    ASSERT_EQ(of_ladder.triangle_count, m.triangle_count);
+    expect_equal(of_ladder.indices, m.indices, 3 * size_t(m.triangle_count), "indices");
+    for (size_t k = 0; k < 3 * size_t(m.vertex_count); ++k)
+      EXPECT_NEAR(of_ladder.positions[k], m.positions[k], 1e-3f) << k;
+  }
+}
+
 // Levels that are given up leave nothing behind.
 TEST_F(LadderLevels, MayBeGivenUpAtAnyMoment) {
   const Atoms molecule = cluster(400, 6);
