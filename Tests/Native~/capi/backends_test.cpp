@@ -197,12 +197,7 @@ TEST_F(Backends, GpuGivesTheSameBytesAlways) { expect_same_bytes_in_slices(clust
 
 // Where coordinates are coarse beside the steps by which walls are looked for.
 TEST_F(Backends, GpuGivesTheSameBytesFarAway) {
-  Atoms atoms = cluster(1000, 7);
-  const Atoms other = shifted(cluster(1000, 8), 60000, 31000, -47000);
-  for (size_t i = 0; i < other.size(); ++i) {
-    const auto c = other.center(i);
-    atoms.add(c[0], c[1], c[2], static_cast<double>(other.radii[i]));
-  }
+  const Atoms atoms = with(cluster(1000, 7), shifted(cluster(1000, 8), 60000, 31000, -47000));
   for (double spacing : {0.35, 0.5, 1.0}) {
     SCOPED_TRACE(spacing);
     expect_same_bytes_in_slices(atoms, settings(spacing));

@@ -7,12 +7,6 @@ namespace {
 
 using namespace surface_checks;
 
-Atoms with(Atoms a, const Atoms &b) {
-  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-  a.radii.insert(a.radii.end(), b.radii.begin(), b.radii.end());
-  return a;
-}
-
 // Vertices of the truncated icosahedron.
 Atoms fullerene() {
   const double g = 0.5 * (1 + std::sqrt(5.0)), scale = 1.42 / 2;

@@ -59,6 +59,13 @@ inline Atoms shifted(const Atoms &atoms, double dx, double dy, double dz) {
   return out;
 }
 
+// Those of both.
+inline Atoms with(Atoms a, const Atoms &b) {
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  a.radii.insert(a.radii.end(), b.radii.begin(), b.radii.end());
+  return a;
+}
+
 // Apart by so much more; the radii are the same.
 inline Atoms scaled(const Atoms &atoms, double factor) {
   Atoms out;
