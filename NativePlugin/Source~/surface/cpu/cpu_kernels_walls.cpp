@@ -181,24 +181,16 @@ void walk_edges(const WallField &field, const BrickSet &bricks, uint32_t brick, 
 
 // Which of the points around them the probes of the points from 0 to count cover, by what no walk would contradict.
 void find_covered(const SurfaceParameters &p, int count, WallWork *w) {
-  const float h = p.spacing, clear = p.depth - kWallStep;
-  const WidePack clear2(clear * clear), twice(2.f * h), h2(h * h);
+  const float clear = p.depth - kWallStep;
   for (int g = 0; g < count; g += kWideLanes) {
-    const Vec3<WidePack> from = load_points(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
-                                load_points(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
-    const WidePack at[kAxes] = {from.x * twice, from.y * twice, from.z * twice};
+    const Vec3<WidePack> from_probe = load_points(w->ends.x + g, w->ends.y + g, w->ends.z + g) -
+                                      load_points(w->ends.center_x + g, w->ends.center_y + g, w->ends.center_z + g);
     const WideMask solid = load_wide(w->ends.distance + g) > WidePack(p.depth);
-    // For a step along an axis.
-    const WidePack left = select(solid, WidePack(-kFarAway), clear2 - length_squared(from) - h2);
-    const auto covers = [&](int k, WidePack needs) { w->covered.set(w->covered.by_step[k], g, needs < left); };
-    for (int a = 0; a < kAxes; ++a) covers(a, at[a]), covers(kWallSteps + a, -at[a]);
-    int k = kAxes;
-    for (int a = 0; a < kAxes; ++a)
-      for (int b = a + 1; b < kAxes; ++b, k += 2) {
-        const WidePack sum = at[a] + at[b], difference = at[a] - at[b];
-        covers(k, h2 + sum), covers(kWallSteps + k, h2 - sum);
-        covers(k + 1, h2 + difference), covers(kWallSteps + k + 1, h2 - difference);
-      }
+    const WidePack radius2 = select(solid, WidePack(-kFarAway), WidePack(clear * clear));
+    look_around(p.spacing, from_probe, radius2, [&](int step, const WidePack &along, const WidePack &left) {
+      w->covered.set(w->covered.by_step[step], g, along < left);
+      w->covered.set(w->covered.by_step[kWallSteps + step], g, -along < left);
+    });
     w->covered.set(w->covered.solid, g, solid);
   }
   w->covered.end(count);

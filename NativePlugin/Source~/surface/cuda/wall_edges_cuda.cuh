@@ -219,7 +219,9 @@ __device__ __forceinline__ uint32_t uncovered_steps(const WallJob &job, const Wa
   uint32_t listed = 0;
 #pragma unroll
   for (int s = 0; s < kWallSteps; ++s) listed |= (edges[2 * s] >> start.bit % 32 & 1) << s;
-  return listed & ~covered_steps(f.parameters, x - probe.center);
+  look_around(f.parameters.spacing, x - probe.center, f.parameters.depth * f.parameters.depth,
+              [&](int step, float along, float left) { listed &= ~(along < left ? 1u << step : 0u); });
+  return listed;
 }
 
 // Does the probe of an end, when it rolls on along its arc or atom to where it is nearest to the middle of a rest,

@@ -134,18 +134,22 @@ QSES_FN NearestProbe nearest_probe(const FeatureView &f, const Candidates &candi
 QSES_FN bool probe_covers(const SurfaceParameters &p, const NearestProbe &probe, const Vec3<float> &x) {
   return probe.distance > p.depth || length_squared(x - probe.center) < p.depth * p.depth;
 }
-// The steps from a first end to points that lie in the ball of a probe, a bit for each. from_probe: to the first end.
-QSES_FN uint32_t covered_steps(const SurfaceParameters &p, const Vec3<float> &from_probe) {
+// For each step from a point, use(step, along, left): the ball of a probe, whose squared radius that is, covers the
+// point there if along < left, and the one a step back if -along < left.
+template <class T, class Use>
+QSES_FN void look_around(float spacing, const Vec3<T> &from_probe, T radius2, const Use &use) {
   // |v + h s|^2 = |v|^2 + 2 h v s + h^2 s^2
-  const float h = p.spacing, left = p.depth * p.depth - length_squared(from_probe), left_axis = left - h * h,
-              left_diagonal = left_axis - h * h;
-  const Vec3<float> twice = from_probe * (2.f * h);
-  const float along[kWallSteps] = {twice.x,           twice.y,           twice.z,
-                                   twice.x + twice.y, twice.x - twice.y, twice.x + twice.z,
-                                   twice.x - twice.z, twice.y + twice.z, twice.y - twice.z};
-  uint32_t covered = 0;
-  for (int k = 0; k < kWallSteps; ++k) covered |= along[k] < (k < 3 ? left_axis : left_diagonal) ? 1u << k : 0u;
-  return covered;
+  const T h2(spacing * spacing), left_axis = radius2 - length_squared(from_probe) - h2, left_diagonal = left_axis - h2;
+  const Vec3<T> v = from_probe * T(2.f * spacing);
+  use(0, v.x, left_axis);
+  use(1, v.y, left_axis);
+  use(2, v.z, left_axis);
+  use(3, v.x + v.y, left_diagonal);
+  use(4, v.x - v.y, left_diagonal);
+  use(5, v.x + v.z, left_diagonal);
+  use(6, v.x - v.z, left_diagonal);
+  use(7, v.y + v.z, left_diagonal);
+  use(8, v.y - v.z, left_diagonal);
 }
 
 // How far from x, which it covers, in a direction of length 1, the ball of a probe ends.
