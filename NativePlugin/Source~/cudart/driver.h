@@ -53,6 +53,7 @@ namespace cudart {
   F(cuStreamCreateWithPriority, CUresult, CUstream *, unsigned, int)                                            \
   F(cuStreamDestroy_v2, CUresult, CUstream)                                                                     \
   F(cuStreamSynchronize, CUresult, CUstream)                                                                    \
+  F(cuStreamQuery, CUresult, CUstream)                                                                          \
   F(cuStreamWaitEvent, CUresult, CUstream, CUevent, unsigned)                                                   \
   F(cuEventCreate, CUresult, CUevent *, unsigned)                                                               \
   F(cuEventDestroy_v2, CUresult, CUevent)                                                                       \

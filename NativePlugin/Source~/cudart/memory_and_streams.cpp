@@ -4,13 +4,21 @@
 
 #include <cstdint>
 
+using namespace quickses::cudart;
+
 namespace {
 
 CUdeviceptr address(const void *p) { return static_cast<CUdeviceptr>(reinterpret_cast<uintptr_t>(p)); }
 
-}  // namespace
+// Whether something is done: that it is not is an answer, not an error.
+template <class Call>
+cudaError_t ask(Call call) {
+  if (const cudaError_t error = enter()) return remember(error);
+  const CUresult result = call(driver());
+  return result == CUDA_ERROR_NOT_READY ? cudaErrorNotReady : remember(result);
+}
 
-using namespace quickses::cudart;
+}  // namespace
 
 extern "C" {
 
@@ -100,6 +108,9 @@ cudaError_t CUDARTAPI cudaStreamDestroy(cudaStream_t stream) {
 cudaError_t CUDARTAPI cudaStreamSynchronize(cudaStream_t stream) {
   return inside([&](const Driver &d) { return d.cuStreamSynchronize(stream); });
 }
+cudaError_t CUDARTAPI cudaStreamQuery(cudaStream_t stream) {
+  return ask([&](const Driver &d) { return d.cuStreamQuery(stream); });
+}
 cudaError_t CUDARTAPI cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned flags) {
   return inside([&](const Driver &d) { return d.cuStreamWaitEvent(stream, event, flags); });
 }
@@ -117,11 +128,8 @@ cudaError_t CUDARTAPI cudaEventDestroy(cudaEvent_t event) {
 cudaError_t CUDARTAPI cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
   return inside([&](const Driver &d) { return d.cuEventRecord(event, stream); });
 }
-// cudaErrorNotReady is an answer, not an error.
 cudaError_t CUDARTAPI cudaEventQuery(cudaEvent_t event) {
-  if (const cudaError_t error = enter()) return remember(error);
-  const CUresult result = driver().cuEventQuery(event);
-  return result == CUDA_ERROR_NOT_READY ? cudaErrorNotReady : remember(result);
+  return ask([&](const Driver &d) { return d.cuEventQuery(event); });
 }
 cudaError_t CUDARTAPI cudaEventSynchronize(cudaEvent_t event) {
   return inside([&](const Driver &d) { return d.cuEventSynchronize(event); });

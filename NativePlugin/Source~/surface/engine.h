@@ -27,8 +27,9 @@ class LevelSink {
 };
 
 // Levels of ladders that take no longer, in ms, leave a GPU idle enough to be made beside each other, and are small
-// enough for memory of their own. Tests change it.
-inline double short_ladder = 3;
+// enough for memory of their own. Of those that take longer than first_alone, the first would be kept back by the
+// others, which begin behind it. Tests change both.
+inline double short_ladder = 8, first_alone = 2;
 
 class SurfaceEngine {
  public:

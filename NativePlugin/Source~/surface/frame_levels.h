@@ -30,9 +30,10 @@ struct PlannedFrame {
   const FrameInput &in;
   const MemoryPlan &plan;
   Span<const float> spacings;
-  bool is_beside;       // whether its levels are made beside each other
-  uint64_t kind;        // of frames like it (open_counts)
-  uint64_t atom_bytes;  // of the host, for the reports
+  bool is_beside;         // whether its levels are made beside each other
+  bool first_goes_alone;  // but for the first one, behind which they begin
+  uint64_t kind;          // of frames like it (open_counts)
+  uint64_t atom_bytes;    // of the host, for the reports
 };
 
 template <class Executor, class Timer>
@@ -98,7 +99,16 @@ class FrameLevels {
       level.work.hand_out_others = [&] {
         maker.verify_prepared();
         under_way.hand_out_others();
+        progress.enter(level.begin, level.end);
       };
+      if constexpr (Executor::kIsCuda) {
+        level.work.attend_to_others = [&] {
+          maker.verify_prepared();
+          under_way.attend_to_others();
+          progress.enter(level.begin, level.end);
+        };
+        if (is_beside && frame.first_goes_alone && k > 0) own_executor.go_behind(lanes_.lane(0).executor);
+      }
       level.begin = before / total;
       level.end = begun / total;
       maker.begin(level, frame.spacings[k], check);
@@ -173,6 +183,7 @@ class FrameLevels {
       work.memory.send(&level.mesh);
       work.executor.hand_over();
     }
+    bool is_done(const Level &level) const { return level.work.memory.is_done(); }
     void hand_out(Level &level) {
       Work &work = level.work;
       FinishedMesh &out = level.out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The levels of a ladder that are under way, in their order. A level is begun, ended, which asks the back end for the
 // rest of it, and handed out, which waits for it. Those that are made beside each other are all ended before the host
-// waits for the one in front, so that they go out together.
+// waits for the one in front, so that they go out together; unless the last of them attends to the others now and then.
 #pragma once
 
 #include "surface/levels.h"
@@ -12,7 +12,8 @@
 
 namespace quickses {
 
-// Maker: has end(Level &) and hand_out(Level &). Nothing is allocated.
+// Maker: has end(Level &), hand_out(Level &), and is_done(const Level &): whether nobody would wait for one that ended.
+// Nothing is allocated.
 template <class Level, class Maker>
 class LevelsUnderWay {
  public:
@@ -29,10 +30,19 @@ class LevelsUnderWay {
 
   // The last one is about to wait for the back end: the others go out first.
   void hand_out_others() {
+    end_begun();
     while (first_ + 1 < last_) hand_out_first();
   }
   void hand_out_all() {
+    end_begun();
     while (first_ < last_) hand_out_first();
+  }
+  // The last one has given the back end work enough for a while. The very first level is waited for; of the others, the
+  // one in front goes out if it is done.
+  void attend_to_others() {
+    if (first_ + 1 >= last_) return;
+    if (first_ == ended_) maker_.end(*levels_[ended_++]);
+    if (first_ == 0 || maker_.is_done(*levels_[first_])) hand_out_first();
   }
 
  private:
@@ -40,7 +50,6 @@ class LevelsUnderWay {
     while (ended_ < begun_) maker_.end(*levels_[ended_++]);
   }
   void hand_out_first() {
-    end_begun();
     maker_.hand_out(*levels_[first_]);
     levels_[first_++].reset();
   }

@@ -45,7 +45,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
                             learnt_.is_proven && learnt_.milliseconds < kShortFrame);
       try {
         is_beside_ = may_be_beside(in, plan, spacings);
-        const PlannedFrame frame{in, plan, spacings, is_beside_, kind_of(in), atoms_.bytes()};
+        const PlannedFrame frame{in,          plan,          spacings, is_beside_, learnt_.milliseconds > first_alone,
+                                 kind_of(in), atoms_.bytes()};
         levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
           spacing_ = spacing;
           if (work.makes_mesh) check_forecast(work, in, &plan == kMemoryPlans + kMemoryPlanCount - 1);

@@ -363,6 +363,7 @@ FAKE_API CUresult CUDAAPI cuEventCreate(CUevent *event, unsigned) { return make(
 FAKE_API CUresult CUDAAPI cuEventDestroy_v2(CUevent) { return end_one(); }
 FAKE_API CUresult CUDAAPI cuEventRecord(CUevent, CUstream) { return next(); }
 FAKE_API CUresult CUDAAPI cuEventQuery(CUevent) { return next(); }
+FAKE_API CUresult CUDAAPI cuStreamQuery(CUstream) { return next(); }
 FAKE_API CUresult CUDAAPI cuEventSynchronize(CUevent) { return next(); }
 FAKE_API CUresult CUDAAPI cuEventElapsedTime(float *milliseconds, CUevent, CUevent) {
   *milliseconds = 1;

@@ -159,10 +159,14 @@ const Change kChanges[] = {
 class LadderLevels : public testing::Test {
  protected:
   void SetUp() override { quickses::short_ladder = 1e9; }
-  void TearDown() override { quickses::short_ladder = usual_; }
+  void TearDown() override {
+    quickses::short_ladder = usual_;
+    quickses::first_alone = usual_first_;
+  }
+  static void let_first_go_alone(bool alone) { quickses::first_alone = alone ? 0 : 1e9; }
 
  private:
-  const double usual_ = quickses::short_ladder;
+  const double usual_ = quickses::short_ladder, usual_first_ = quickses::first_alone;
 };
 
 TEST_F(LadderLevels, AreAsByThemselves) {
@@ -170,6 +174,7 @@ TEST_F(LadderLevels, AreAsByThemselves) {
   size_t beside = 0;
   for (size_t k = 0; k < std::size(kChanges); ++k) {
     SCOPED_TRACE("change " + std::to_string(k));
+    let_first_go_alone(k % 2 != 0);
     qses_settings s = settings();
     kChanges[k](&s);
     const auto engine = make_engine();
@@ -186,6 +191,34 @@ TEST_F(LadderLevels, AreAsByThemselves) {
   }
   if (tested_backend() == QSES_BACKEND_CUDA) {
     EXPECT_GT(beside, 60u);
+  }
+}
+
+// The finest goes out slab by slab, and attends to the others meanwhile; also when they are given up in the midst of
+// it.
+TEST_F(LadderLevels, BesideAFinestOneInSlabs) {
+  if (tested_backend() != QSES_BACKEND_CUDA) GTEST_SKIP() << "a CPU makes no slabs";
+  const Atoms atoms = cluster(6000, 8);
+  const qses_settings s = settings(0.11);  // more than a million vertices
+  for (bool first_alone : {true, false}) {
+    SCOPED_TRACE(first_alone);
+    let_first_go_alone(first_alone);
+    const auto engine = make_engine();
+    Alone alone;
+    size_t in_slabs = 0;
+    for (int frame = 0; frame < 8; ++frame) {
+      Levels levels;
+      if (frame >= 4) levels.stop_behind = static_cast<size_t>(frame) % 2 + 1;
+      try {
+        compute(*engine, atoms, s, &levels);
+        EXPECT_LT(frame, 4);
+      } catch (const quickses::Cancelled &) {
+        EXPECT_EQ(levels.meshes.size(), levels.stop_behind);
+      }
+      expect_as_by_themselves(levels, atoms, s, &alone);
+      if (frame < 4 && levels.were_beside()) in_slabs += levels.meshes.back().report.slice_count > 1 ? 1 : 0;
+    }
+    EXPECT_GE(in_slabs, 2u);
   }
 }
 
@@ -231,6 +264,7 @@ TEST_F(LadderLevels, MayBeGivenUpAtAnyMoment) {
     const auto engine = make_engine();
     std::map<int, Alone> alone;
     for (int frame = 0; frame < 60; ++frame) {
+      let_first_go_alone(frame % 2 != 0);
       const Atoms atoms = scaled(molecule, 1.0 + 0.002 * (frame % 5));
       Levels levels;
       std::thread other;

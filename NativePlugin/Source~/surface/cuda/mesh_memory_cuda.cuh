@@ -213,6 +213,11 @@ class MeshMemory<CudaExecutor> {
     }
     host_mesh_.own_numbers(built);
   }
+  // Whether nobody would wait for it.
+  bool is_done() const {
+    return cudaStreamQuery(executor_.stream_handle()) == cudaSuccess &&
+           (!sends_triangles_ || cudaStreamQuery(copies_) == cudaSuccess);
+  }
   // Then hands it out, without the report but for sums that come along. Waits.
   void finish(MeshMemoryView built, const qses_settings &settings, FinishedMesh *out) {
     executor_.wait();

@@ -77,8 +77,6 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   auto &executor = work.executor;
   using Executor = std::remove_reference_t<decltype(executor)>;
   using B = Backend<Executor>;
-  executor.hand_over();
-  work.hand_out_others();
   const size_t leaves = size_t(bricks.count) * kLeavesPerBrick;
   const Span<uint64_t> signs = executor.template allocate<uint64_t>(leaves);
   const Span<uint64_t> marks = executor.template allocate_zeros<uint64_t>(leaves);
@@ -170,6 +168,8 @@ MeshMemoryView build_in_slabs(Work &work, const BrickSet &bricks, const Slabs &s
   };
   // What was told. Waits for it; the GPU has the next slab to work on meanwhile.
   const auto deliver = [&](uint32_t found) {
+    executor.hand_over();
+    work.attend_to_others();
     executor.verify_counts();
     // Where there is more than was foreseen no more is emitted, and the last look at the counts will throw.
     if (!slabs.room.covers(executor.verified(layout.totals))) return;

@@ -73,6 +73,8 @@ struct LevelWork : PreparedFrame {
   UntoldSize untold{};                               // of the mesh as it is made (closed_layout.h)
   // Called before the host waits for this level: levels under way beside it go out first.
   std::function<void()> hand_out_others = [] {};
+  // Called now and then while the back end has enough to do for this level: others may go out.
+  std::function<void()> attend_to_others = [] {};
 
   // Whether the mesh, as it is made, has the vertices and normals that will be delivered: then they are painted before
   // anything waits for what is measured.
