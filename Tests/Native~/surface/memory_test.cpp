@@ -363,13 +363,40 @@ TEST(Budget, TooSmallIsRefusedWithOneThatWouldDo) {
   }
 }
 
+// With many creases for its size.
+Atoms creased_sheet() {
+  Atoms sheet;
+  for (int k = 0; k < 120; ++k) sheet.add(3.4 * (k % 12), 4.8 * (k / 12), 0, 1.7);
+  return sheet;
+}
+
+// Room that a frame takes which knows how many splits there are: the first one lacks it behind its mesh, and is made
+// again, as a whole.
+TEST(Budget, OfAFrameThatKnowsItsSplitsDoesForTheFirst) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "a GPU takes room for frames that follow";
+  for (const double spacing : {0.5, 1.0}) {
+    SCOPED_TRACE(spacing);
+    qses_settings s = settings(spacing);
+    s.creases = 1;
+    const Context unbounded(2);
+    set_atoms(unbounded, creased_sheet());
+    compute_view(unbounded, s);
+    const qses_mesh expected = compute_view(unbounded, s);
+    const uint64_t peak = report_of(unbounded).work_bytes_peak;
+    const Context bounded(2, peak + peak / 20);
+    set_atoms(bounded, creased_sheet());
+    expect_same_bytes(compute_view(bounded, s), expected, "sheet");
+    EXPECT_EQ(report_of(bounded).attempts, 2u);
+    EXPECT_EQ(report_of(bounded).slice_count, 1u);
+  }
+}
+
 // How much creases add to flat, regular or isolated atoms is a guess, until such a surface was made.
 TEST(Budget, WhatCreasesAddIsKnownOnceItWasFound) {
-  Atoms sheet, ions;
-  for (int k = 0; k < 120; ++k) sheet.add(3.4 * (k % 12), 4.8 * (k / 12), 0, 1.7);
+  Atoms ions;
   for (int k = 0; k < 27; ++k) ions.add(9.0 * (k % 3), 9.0 * (k / 3 % 3), 9.0 * (k / 9), k % 2 ? 1.02 : 1.81);
   for (const auto &[name, atoms] :
-       {std::pair<std::string, Atoms>("sheet", sheet), {"ions", ions}, {"lattice", lattice(6, 4.69, 1.7)}})
+       {std::pair<std::string, Atoms>("sheet", creased_sheet()), {"ions", ions}, {"lattice", lattice(6, 4.69, 1.7)}})
     for (const double spacing : {0.5, 1.0}) {
       Case c{name + " at " + std::to_string(spacing), atoms, settings(spacing)};
       c.settings.creases = c.settings.hard_edges = 1;
