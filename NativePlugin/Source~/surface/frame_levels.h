@@ -96,17 +96,9 @@ class FrameLevels {
       if (!is_coarse) maker.verify_prepared();
       own_memory.forget_mesh();
       Level &level = under_way.add(*this, shared, own_executor, own_memory, is_beside);
-      level.work.hand_out_others = [&] {
-        maker.verify_prepared();
-        under_way.hand_out_others();
-        progress.enter(level.begin, level.end);
-      };
+      level.work.hand_out_others = [&under_way] { under_way.hand_out_others(); };
       if constexpr (Executor::kIsCuda) {
-        level.work.attend_to_others = [&] {
-          maker.verify_prepared();
-          under_way.attend_to_others();
-          progress.enter(level.begin, level.end);
-        };
+        level.work.attend_to_others = [&under_way] { under_way.attend_to_others(); };
         if (is_beside && frame.first_goes_alone && k > 0) own_executor.go_behind(lanes_.lane(0).executor);
       }
       level.begin = before / total;
@@ -184,6 +176,7 @@ class FrameLevels {
       work.executor.hand_over();
     }
     bool is_done(const Level &level) const { return level.work.memory.is_done(); }
+    void go_on_with(const Level &level) { levels.progress.enter(level.begin, level.end); }
     void hand_out(Level &level) {
       Work &work = level.work;
       FinishedMesh &out = level.out;

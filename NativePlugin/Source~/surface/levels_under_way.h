@@ -12,8 +12,8 @@
 
 namespace quickses {
 
-// Maker: has end(Level &), hand_out(Level &), and is_done(const Level &): whether nobody would wait for one that ended.
-// Nothing is allocated.
+// Maker: has end(Level &), hand_out(Level &), is_done(const Level &), which is whether nobody would wait for one that
+// ended, verify_prepared(), for what all rest on, and go_on_with(const Level &) after others. Nothing is allocated.
 template <class Level, class Maker>
 class LevelsUnderWay {
  public:
@@ -30,8 +30,10 @@ class LevelsUnderWay {
 
   // The last one is about to wait for the back end: the others go out first.
   void hand_out_others() {
+    maker_.verify_prepared();
     end_begun();
     while (first_ + 1 < last_) hand_out_first();
+    maker_.go_on_with(*levels_[last_ - 1]);
   }
   void hand_out_all() {
     end_begun();
@@ -40,9 +42,11 @@ class LevelsUnderWay {
   // The last one has given the back end work enough for a while. The very first level is waited for; of the others, the
   // one in front goes out if it is done.
   void attend_to_others() {
+    maker_.verify_prepared();
     if (first_ + 1 >= last_) return;
     if (first_ == ended_) maker_.end(*levels_[ended_++]);
     if (first_ == 0 || maker_.is_done(*levels_[first_])) hand_out_first();
+    maker_.go_on_with(*levels_[last_ - 1]);
   }
 
  private:
