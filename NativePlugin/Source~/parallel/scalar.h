@@ -34,7 +34,9 @@ QSES_FN T quotient(T a, T b) {
 }
 QSES_FN float quotient(float a, float b) {
 #if defined(__CUDA_ARCH__)
-  return __fdividef(a, b);
+  float r;
+  asm("div.approx.ftz.f32 %0, %1, %2;" : "=f"(r) : "f"(a), "f"(b));
+  return r;
 #else
   return a / b;
 #endif

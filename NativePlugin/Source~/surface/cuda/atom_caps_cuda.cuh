@@ -139,35 +139,53 @@ __device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
 // within any lie within one of these.
 __device__ __forceinline__ int drop_caps_within_large(const CapRows &rows, int n) {
   constexpr int kLarge = 8, kLanes = kWarp / kLarge;
+  __shared__ Cap large_memory[kCapWarps][kLarge];
+  __shared__ float sine_memory[kCapWarps][kLarge];
+  Cap *const large = large_memory[threadIdx.x / kWarp];
+  float *const large_sine = sine_memory[threadIdx.x / kWarp];
   const int lane = lane_id();
   float least = 2.f;
-  int large = 0;
+  int largest = 0;
+#pragma unroll 1
   for (int j = lane; j < n; j += kWarp) {
     const float cosine = rows.cap[j].cosine;
-    if (cosine < least) least = cosine, large = j;
+    if (cosine < least) least = cosine, largest = j;
   }
 #pragma unroll
   for (int d = kLanes / 2; d > 0; d >>= 1) {
     const float other = __shfl_xor_sync(kFullWarp, least, d);
-    const int other_large = __shfl_xor_sync(kFullWarp, large, d);
-    if (other < least) least = other, large = other_large;
+    const int other_largest = __shfl_xor_sync(kFullWarp, largest, d);
+    if (other < least) least = other, largest = other_largest;
   }
-  for (int first = 0; first < n; first += kWarp) {
-    const int j = first + lane;
-    const Cap cap = rows.cap[j < n ? j : first];
-    const float sine = rows.sine[j < n ? j : first];
-    bool within = false;
-#pragma unroll
-    for (int g = 0; g < kLarge; ++g) {
-      const int k = __shfl_sync(kFullWarp, large, g * kLanes);
-      const Cap other = rows.cap[k];
-      within |= cap_contains(other.cosine, rows.sine[k], cap.cosine, sine,
-                             dot(Vec3<float>(other.axis), Vec3<float>(cap.axis)));
-    }
-    if (j < n && within) rows.neighbor[j] |= kContainedCap;
+  if (lane % kLanes == 0) {
+    large[lane / kLanes] = rows.cap[largest];
+    large_sine[lane / kLanes] = rows.sine[largest];
   }
   __syncwarp();
-  return keep_free_caps(rows, n);
+  int kept = 0;
+#pragma unroll 1
+  for (int first = 0; first < n; first += kWarp) {
+    const bool on = first + lane < n;
+    const int j = on ? first + lane : first;
+    const Cap cap = rows.cap[j];
+    const float sine = rows.sine[j];
+    const uint32_t neighbor = rows.neighbor[j];
+    bool within = false;
+#pragma unroll
+    for (int g = 0; g < kLarge; ++g)
+      within |= cap_contains(large[g].cosine, large_sine[g], cap.cosine, sine,
+                             dot(Vec3<float>(large[g].axis), Vec3<float>(cap.axis)));
+    const bool stays = on && !within;
+    const int place = append_place(stays, &kept);
+    __syncwarp();  // all are read
+    if (stays) {
+      rows.cap[place] = cap;
+      rows.sine[place] = sine;
+      rows.neighbor[place] = neighbor;
+    }
+    __syncwarp();
+  }
+  return kept;
 }
 
 // Marks those of the caps from `first` on that lie within another one, so many lanes for each.
