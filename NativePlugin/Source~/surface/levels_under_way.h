@@ -42,7 +42,6 @@ class LevelsUnderWay {
   // The last one has given the back end work enough for a while. The very first level is waited for; of the others, the
   // one in front goes out if it is done.
   void attend_to_others() {
-    maker_.verify_prepared();
     if (first_ + 1 >= last_) return;
     if (first_ == ended_) maker_.end(*levels_[ended_++]);
     if (first_ == 0 || maker_.is_done(*levels_[first_])) hand_out_first();
