@@ -84,8 +84,9 @@ struct MeshLayout {
 
   // Where more were counted than anticipated nothing may be emitted: there is no room for it, or a brick is missing.
   QSES_FN bool has_room() const {
-    return totals->vertices <= vertex_total && totals->triangles <= triangle_total && totals->leaves <= leaf_total &&
-           totals->border_changes == 0 && totals->near <= near;
+    const MeshTotals all = *totals;  // asked for together
+    return (all.vertices <= vertex_total) & (all.triangles <= triangle_total) & (all.leaves <= leaf_total) &
+           (all.border_changes == 0) & (all.near <= near);
   }
 };
 
