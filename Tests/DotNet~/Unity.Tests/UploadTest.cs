@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using QuickSes.EngineDouble;
 using System;
+using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.Rendering;
 
@@ -114,6 +115,59 @@ namespace QuickSes.Tests
             Assert.That(other.vertexCount, Is.EqualTo(view.VertexCount));
             _uploader.Upload(view, _mesh);
             Assert.That(_mesh.triangles, Is.EqualTo(other.triangles));
+        }
+
+        [TestCaseSource(nameof(Changes))]
+        public void BuffersThatSomebodyElseHasChangedAreSetUpAgain(Action<Mesh> change)
+        {
+            SurfaceMeshView view = Compute(30);
+            var expected = new Mesh();
+            using (var other = new SurfaceMeshUploader())
+                other.Upload(view, expected);
+            _uploader.Upload(view, _mesh);
+            change(_mesh);
+            _uploader.Upload(view, _mesh);
+            Assert.That(_mesh.GetVertexAttributes(), Is.EqualTo(expected.GetVertexAttributes()));
+            Assert.That(_mesh.vertices, Is.EqualTo(expected.vertices));
+            Assert.That(_mesh.normals, Is.EqualTo(expected.normals));
+            Assert.That(_mesh.colors32, Is.EqualTo(expected.colors32));
+            Assert.That(_mesh.indexFormat, Is.EqualTo(IndexFormat.UInt32));
+            Assert.That(_mesh.subMeshCount, Is.EqualTo(1));
+            Assert.That(_mesh.triangles, Is.EqualTo(expected.triangles));
+        }
+
+        private static IEnumerable<TestCaseData> Changes()
+        {
+            TestCaseData Case(string name, Action<Mesh> change) => new TestCaseData(change).SetArgDisplayNames(name);
+
+            // Instead of the attribute with its number, or after the last.
+            TestCaseData Attribute(string name, int number, VertexAttribute attribute, VertexAttributeFormat format,
+                int dimension, int stream) => Case(name, mesh =>
+            {
+                var attributes = new List<VertexAttributeDescriptor>(mesh.GetVertexAttributes());
+                if (number < attributes.Count)
+                    attributes.RemoveAt(number);
+                attributes.Add(new VertexAttributeDescriptor(attribute, format, dimension, stream));
+                mesh.SetVertexBufferParams(mesh.vertexCount, attributes.ToArray());
+            });
+
+            TestCaseData Indices(string name, int added, IndexFormat format) => Case(name, mesh =>
+            {
+                int count = (int)mesh.GetIndexCount(0) + added;
+                mesh.SetSubMesh(0, default);
+                mesh.SetIndexBufferParams(count, format);
+                mesh.SetSubMesh(0, new SubMeshDescriptor(0, count), AllFour);
+            });
+
+            yield return Case("vertices", mesh => mesh.SetVertexBufferParams(mesh.vertexCount - 1, mesh.GetVertexAttributes()));
+            yield return Case("submeshes", mesh => mesh.subMeshCount = 2);
+            yield return Indices("indices", -3, IndexFormat.UInt32);
+            yield return Indices("indices of 16 bits", 0, IndexFormat.UInt16);
+            yield return Attribute("one more", 3, VertexAttribute.TexCoord3, VertexAttributeFormat.Float32, 2, 2);
+            yield return Attribute("another", 2, VertexAttribute.TexCoord7, VertexAttributeFormat.UInt32, 1, 1);
+            yield return Attribute("stream", 2, VertexAttribute.Color, VertexAttributeFormat.UNorm8, 4, 2);
+            yield return Attribute("format", 2, VertexAttribute.Color, VertexAttributeFormat.SNorm8, 4, 1);
+            yield return Attribute("dimension", 1, VertexAttribute.Normal, VertexAttributeFormat.Float32, 4, 0);
         }
 
         [Test]
