@@ -178,6 +178,8 @@ namespace QuickSes.Tests
                     _gpu.Faults.Add("submitted after its end");
                 if (IsStopped || _waiting.Count == MostWaiting)
                     return new QuickSesError(QuickSesStatus.Busy, "");
+                if (buffers.Graphics != _gpu.AskedFor)
+                    _gpu.Faults.Add("buffers of another graphics API");
                 if (mesh.View.VertexCount == 0)
                     return new QuickSesError(QuickSesStatus.NoResult, "is not on a device");
                 SurfaceMeshView view = mesh.View;
@@ -251,14 +253,17 @@ namespace QuickSes.Tests
                 NativeGpuBuffers buffers = submission.Buffers;
                 bool isNew = buffers.Generation != _generation;
                 _generation = buffers.Generation;
-                submission.Vertices.Span.CopyTo(Find(0, buffers.Vertices, isNew));
+                submission.Vertices.Span.CopyTo(Find(0, buffers.Vertices, isNew, 16 * buffers.VertexCapacity));
                 if (buffers.Colors != 0)
-                    MemoryMarshal.AsBytes(submission.Colors.Span).CopyTo(Find(1, buffers.Colors, isNew));
+                    MemoryMarshal.AsBytes(submission.Colors.Span).CopyTo(
+                        Find(1, buffers.Colors, isNew, 4 * buffers.VertexCapacity));
                 if (buffers.Owners != 0)
-                    MemoryMarshal.AsBytes(submission.Owners.Span).CopyTo(Find(2, buffers.Owners, isNew));
+                    MemoryMarshal.AsBytes(submission.Owners.Span).CopyTo(
+                        Find(2, buffers.Owners, isNew, 4 * buffers.VertexCapacity));
                 if (buffers.Texcoords != 0)
-                    MemoryMarshal.AsBytes(submission.Texcoords.Span).CopyTo(Find(3, buffers.Texcoords, isNew));
-                Span<byte> indices = Find(4, buffers.Indices, isNew);
+                    MemoryMarshal.AsBytes(submission.Texcoords.Span).CopyTo(
+                        Find(3, buffers.Texcoords, isNew, 8 * buffers.VertexCapacity));
+                Span<byte> indices = Find(4, buffers.Indices, isNew, 4 * buffers.IndexCapacity);
                 MemoryMarshal.AsBytes(submission.Indices.Span).CopyTo(indices);
                 if (buffers.ClearRest != 0)
                     indices.Slice(4 * submission.Indices.Length, 4 * ((int)buffers.IndexCapacity - submission.Indices.Length))
@@ -266,10 +271,12 @@ namespace QuickSes.Tests
             }
 
             // The buffer CUDA knows, which is not the one that has the name now if nobody told it of another.
-            private Span<byte> Find(int place, ulong name, bool isNew)
+            private Span<byte> Find(int place, ulong name, bool isNew, ulong least)
             {
                 if (!GraphicsMemory.TryFind((long)name, out long identity, out Span<byte> bytes))
                     _gpu.Faults.Add($"there is no buffer {name}");
+                if ((ulong)bytes.Length < least)
+                    _gpu.Faults.Add($"buffer {name} is smaller than was said");
                 if (isNew)
                     _registrations[place] = new Registration { Identity = identity };
                 else if (_registrations[place].Identity != identity)

@@ -157,6 +157,32 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator OtherAtomsHaveColoursOfTheirOwn()
+        {
+            Surface.Coloring = AtomColoring.Vertices;
+            for (byte molecule = 0; molecule < 3; ++molecule)
+            {
+                Surface.SetAtoms(_gpu.Moved(molecule), _gpu.Radii);
+                Surface.SetColors(Array.ConvertAll(_gpu.Radii, radius => new Color32((byte)(100 * radius), molecule, 3, 4)));
+                yield return _gpu.Rig.Settle();
+                Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
+                GpuRig.AssertDrawn(Surface);
+            }
+        }
+
+        [UnityTest]
+        public IEnumerator WhatIsHiddenByATextureIsInTheBuffers()
+        {
+            Surface.Coloring = AtomColoring.Texture;
+            Surface.SetAtoms(_gpu.Start, _gpu.Radii);
+            Surface.SetVisible(Array.ConvertAll(_gpu.Start, place => place.x > 5));
+            yield return _gpu.Rig.Settle();
+            Surface.SetVisible(Array.Empty<bool>());
+            yield return _gpu.Rig.Settle();
+            GpuRig.AssertDrawn(Surface);
+        }
+
+        [UnityTest]
         public IEnumerator OtherAttributesTakeOtherBuffers()
         {
             Surface.Coloring = AtomColoring.Vertices;
@@ -171,6 +197,9 @@ namespace QuickSes.Tests
             Surface.Coloring = AtomColoring.Texture;
             yield return _gpu.Rig.Settle();
             Assert.That(Surface.Mesh.HasVertexAttribute(VertexAttribute.TexCoord7));
+            GpuRig.AssertDrawn(Surface);
+            Surface.Coloring = AtomColoring.Vertices;
+            yield return _gpu.Rig.Settle();
             GpuRig.AssertDrawn(Surface);
             Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
         }
@@ -220,11 +249,11 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator ComputeNowShowsAtOnce([Values] bool isFirst)
+        public IEnumerator ComputeNowShowsAtOnce([Values] bool isFirst, [Values] bool isLarger)
         {
             if (!isFirst)
                 yield return _gpu.ShowFirst();
-            Surface.SetAtoms(_gpu.Moved(5), _gpu.Radii);
+            Surface.SetAtoms(Spread(_gpu.Moved(5), isLarger ? 2 : 1), _gpu.Radii);
             int events = RenderThread.Issued;
             Assert.That(Surface.ComputeNow());
             Assert.That(RenderThread.Issued, Is.EqualTo(events + 1), "before anything of this frame is drawn");
@@ -233,6 +262,7 @@ namespace QuickSes.Tests
             GpuRig.AssertDrawn(Surface);
             yield return _gpu.Rig.Settle();
             GpuRig.AssertDrawn(Surface);
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1), "the old buffers are gone");
         }
 
         [UnityTest]
@@ -274,10 +304,31 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Frames(3);
             Assert.That(Surface.Mesh, Is.SameAs(before));
             GpuRig.AssertDrawn(Surface);
+            Surface.SetAtoms(Spread(_gpu.Moved(1), 2), _gpu.Radii);
             Surface.enabled = true;
             yield return _gpu.Rig.Settle();
             GpuRig.AssertDrawn(Surface);
-            SurfaceMeshes.AssertShows(Surface, Spread(_gpu.Start, 2), _gpu.Radii, true);
+            SurfaceMeshes.AssertShows(Surface, Spread(_gpu.Moved(1), 2), _gpu.Radii, true);
+        }
+
+        [UnityTest]
+        public IEnumerator BuffersThatAreTooSmallBeforeTheyAreShownGo()
+        {
+            yield return _gpu.ShowFirst();
+            RenderThread.IsRunning = false;
+            for (int factor = 2; factor < 5; ++factor)
+            {
+                int submissions = _gpu.Gpu.Submissions;
+                Surface.enabled = false;
+                Surface.SetAtoms(Spread(_gpu.Start, factor), _gpu.Radii);
+                Surface.enabled = true;
+                if (factor == 4)
+                    RenderThread.IsRunning = true; // two may wait
+                yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            }
+            yield return _gpu.Rig.Settle();
+            GpuRig.AssertDrawn(Surface);
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1));
         }
 
         [UnityTest]

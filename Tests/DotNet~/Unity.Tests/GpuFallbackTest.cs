@@ -33,6 +33,8 @@ namespace QuickSes.Tests
             _gpu.Gpu.EventFailure = "another GPU draws";
             yield return _gpu.ShowFirst();
             AssertByHost("another GPU draws");
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1), "buffers that are never shown go");
+            Assert.That(_gpu.Gpu.TargetCount, Is.EqualTo(0));
             int submissions = _gpu.Gpu.Submissions;
             yield return _gpu.Show(_gpu.Moved(1));
             Assert.That(_gpu.Gpu.Submissions, Is.EqualTo(submissions), "it is for good");
@@ -153,6 +155,68 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator WhileTooManyWaitComputeNowTakesHostMemory()
+        {
+            yield return _gpu.ShowFirst();
+            RenderThread.IsRunning = false;
+            Engine.ChecksMeshes = false;
+            for (int frame = 0; frame < 2; ++frame) // as many as may wait
+            {
+                int before = _gpu.Rig.Levels.Count;
+                Surface.SetPositions(_gpu.Moved(frame));
+                yield return SurfaceRig.Until(() => _gpu.Rig.Levels.Count > before);
+            }
+            Surface.SetPositions(_gpu.Moved(2));
+            Assert.That(Surface.ComputeNow());
+            Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Host));
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(2), _gpu.Radii, true);
+            RenderThread.IsRunning = true;
+            Engine.ChecksMeshes = true;
+            yield return _gpu.Rig.Settle();
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(2), _gpu.Radii, true);
+            yield return _gpu.Show(_gpu.Moved(3));
+            AssertOnGpu();
+        }
+
+        // What was being copied into other buffers of the host is not shown after what came later.
+        [UnityTest]
+        public IEnumerator AnUploadOfTheSurfaceBeforeEndsWithTheDelivery()
+        {
+            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+            Surface.Coloring = AtomColoring.Vertices;
+            yield return _gpu.ShowFirst();
+            double budget = SurfaceScheduler.UploadBudget;
+            SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+            RenderThread.IsRunning = false;
+            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
+            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > 0);
+            SurfaceScheduler.UploadBudget = 1e-6; // in many pieces
+            Surface.Coloring = AtomColoring.Texture;
+            yield return SurfaceRig.Frames(2);
+            RenderThread.IsRunning = true;
+            int updates = _gpu.Rig.Levels.Count;
+            yield return SurfaceRig.Until(() => _gpu.Rig.Levels.Count > updates);
+            SurfaceScheduler.UploadBudget = budget;
+            yield return _gpu.Rig.Settle();
+            AssertOnGpu();
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(1), _gpu.Radii, true);
+        }
+
+        [UnityTest]
+        public IEnumerator WhereTheEngineGivesNoBuffersHostMemoryGoesOn([Values] bool isFirst)
+        {
+            if (!isFirst)
+                yield return _gpu.ShowFirst();
+            GraphicsMemory.Refusal = "there are no such buffers";
+            Surface.Spacing = 0.25f; // for larger ones
+            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
+            yield return _gpu.Rig.Settle();
+            GraphicsMemory.Refusal = null;
+            AssertByHost("there are no such buffers");
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1));
+        }
+
+        [UnityTest]
         public IEnumerator SwitchedOffItComesHome()
         {
             SurfaceScheduler.GpuMeshPlan = GpuMeshPlan.WholeBuffers;
@@ -163,6 +227,38 @@ namespace QuickSes.Tests
             AssertByHost("Host");
             Assert.That(_gpu.Renderer.HasOwnBounds, Is.False);
             Assert.That(_gpu.Gpu.TargetCount, Is.EqualTo(0));
+        }
+
+        [UnityTest]
+        public IEnumerator SwitchedOnAgainItLooksTheSame()
+        {
+            Surface.Coloring = AtomColoring.Vertices;
+            yield return _gpu.ShowFirst();
+            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+            yield return _gpu.Rig.Settle();
+            AssertByHost("Host");
+            SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+            yield return _gpu.Show(_gpu.Moved(1));
+            AssertOnGpu();
+        }
+
+        [UnityTest]
+        public IEnumerator SwitchedOffDuringADeliveryItComesHome([Values] bool isFirst)
+        {
+            if (!isFirst)
+                yield return _gpu.ShowFirst();
+            RenderThread.IsRunning = false;
+            Engine.ChecksMeshes = false;
+            int submissions = _gpu.Gpu.Submissions;
+            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
+            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+            yield return _gpu.Rig.Settle();
+            Engine.ChecksMeshes = true;
+            AssertByHost("Host");
+            Assert.That(_gpu.Gpu.TargetCount, Is.EqualTo(0));
+            Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1));
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(1), _gpu.Radii, true);
         }
 
         [UnityTest]
@@ -179,6 +275,39 @@ namespace QuickSes.Tests
             _gpu.Gpu.DownloadsFail = false;
             yield return _gpu.Show(_gpu.Moved(1));
             AssertByHost("Host");
+            SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+            yield return _gpu.Show(_gpu.Moved(2));
+            AssertOnGpu();
+            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+            yield return _gpu.Rig.Settle();
+            AssertByHost("Host");
+        }
+
+        [UnityTest]
+        public IEnumerator AFailureThatWasToldIsNotToldAgain()
+        {
+            yield return _gpu.ShowFirst();
+            Engine.ChecksMeshes = false; // what the event was to write is not there
+            _gpu.Gpu.DownloadsFail = true; // so that it stays
+            _gpu.Gpu.EventFailure = "the device was lost";
+            Surface.SetPositions(_gpu.Moved(1));
+            yield return SurfaceRig.Until(() => _gpu.Rig.Failures.Count > 0);
+            Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
+            Assert.That(Surface.DeliveryReason, Is.EqualTo("the device was lost"));
+            _gpu.Gpu.DownloadsFail = false;
+            _gpu.Gpu.EventFailure = null;
+            SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+            RenderThread.IsRunning = false;
+            int submissions = _gpu.Gpu.Submissions;
+            Surface.SetPositions(_gpu.Moved(2));
+            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            yield return SurfaceRig.Frames(3);
+            Assert.That(Surface.DeliveryReason, Is.Empty);
+            RenderThread.IsRunning = true;
+            yield return _gpu.Rig.Settle();
+            Engine.ChecksMeshes = true;
+            AssertOnGpu();
+            SurfaceMeshes.AssertShows(Surface, _gpu.Moved(2), _gpu.Radii, true);
         }
 
         [UnityTest]

@@ -52,6 +52,35 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatIsOnTheGpuHasNothingLeftOfWhatWasBefore()
+        {
+            IGpuLibrary library = GpuDelivery.Library;
+            using (var gpu = new StandInGpu())
+            {
+                GpuDelivery.Library = gpu;
+                SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+                AtomLook byHost = Take();
+                Upload();
+                Take(isMoving: true);
+                Assert.That(_shown.Upload(new UploadShare(1, 1, _room), out _), Is.EqualTo(UploadStep.Unfinished));
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(2), "one is being filled");
+                AtomLook first = Take(gpu: gpu);
+                Assert.That(Deliver(), Is.EqualTo(UploadStep.Unfinished));
+                Assert.That(Deliver(), Is.EqualTo(UploadStep.Shown));
+                Assert.That(IsFreed(byHost) && !IsFreed(first));
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(1));
+                AtomLook second = Take(gpu: gpu);
+                Assert.That(Deliver(), Is.EqualTo(UploadStep.Shown));
+                Assert.That(IsFreed(first) && !IsFreed(second));
+                _shown.Clear();
+                Assert.That(IsFreed(second));
+                SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+                GpuDelivery.Library = library;
+                Assert.That(gpu.Faults, Is.Empty);
+            }
+        }
+
+        [Test]
         public void NoSecondMeshIsLeftAtRestByWhatWasDropped()
         {
             Take();
@@ -100,9 +129,12 @@ namespace QuickSes.Tests
         }
 
         // Of somebody who does not need the look any longer.
-        private AtomLook Take(bool isMoving = false, Vector2? coordinates = null)
+        private AtomLook Take(bool isMoving = false, Vector2? coordinates = null, IGpuLibrary gpu = null)
         {
             SurfaceSettings settings = SurfaceSettings.Default;
+            settings.Tag = SurfaceScheduler.NextJob();
+            if (gpu != null)
+                settings.Delivery = gpu.Delivery;
             settings.VertexLayout = SurfaceVertexLayout.Interleaved;
             Assert.That(_context.Compute(settings, out _), Is.EqualTo(QuickSesStatus.Ok));
             var look = new AtomLook(1, uint.MaxValue);
@@ -114,6 +146,15 @@ namespace QuickSes.Tests
         }
 
         private UploadStep Upload() => _shown.Upload(new UploadShare(long.MaxValue, long.MaxValue, _room), out _);
+
+        // A frame.
+        private UploadStep Deliver()
+        {
+            UploadStep step = _shown.Deliver(false);
+            GpuDelivery.Issue();
+            RenderThread.Run();
+            return step;
+        }
 
         private static bool IsFreed(AtomLook look) => look.Colors.IsEmpty;
     }

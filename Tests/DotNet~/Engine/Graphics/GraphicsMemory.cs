@@ -17,6 +17,9 @@ namespace QuickSes.EngineDouble
         /// <summary>A buffer is being deleted; its identity.</summary>
         public static event Action<long> Deleting;
 
+        /// <summary>If not null, the graphics API gives no buffers any more.</summary>
+        public static string Refusal { get; set; }
+
         /// <summary>False: there is no such buffer.</summary>
         /// <param name="name">Its name.</param>
         /// <param name="identity">A number that no other buffer has or will have.</param>
@@ -31,6 +34,8 @@ namespace QuickSes.EngineDouble
 
         internal static int Add(IntPtr memory, long size)
         {
+            if (Refusal != null)
+                throw new InvalidOperationException(Refusal);
             int name = s_free.Count > 0 ? s_free.Min : s_buffers.Count + 1;
             s_free.Remove(name);
             s_buffers[name] = new Entry { Memory = memory, Size = size, Identity = ++s_made };

@@ -226,8 +226,8 @@ namespace QuickSes
                 (_front, _back) = (_back, _front);
             _back.IsFilled = false;
             _isResting = false;
-            if (IsOnGpu)
-                _gpu.Hide();
+            if (IsOnGpu || _isArrivalUploaded)
+                _gpu?.Hide(); // also what was to be shown, and never was
             if (!_front.Writer.HasRoom)
                 _back.FreeMesh(); // at rest: a single mesh will do
             return _isArrivalUploaded ? Arrive() : UploadStep.Moved;
