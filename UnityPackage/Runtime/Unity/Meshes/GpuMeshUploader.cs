@@ -31,7 +31,6 @@ namespace QuickSes
         private GpuMesh _front; // what is shown, or was before it was hidden
         private GpuMesh _back; // in new buffers; or buffers that are not needed any more, until no event can write them
         private KeptMesh _awaited; // what the back waits for; null: nothing
-        private bool _isBackDone;
         private int _done; // the last event that is known to have run
         private bool _isBusy; // what was to be submitted has to wait
         private bool _isFollowing; // events have not run yet
@@ -75,19 +74,16 @@ namespace QuickSes
                 Forget(); // who wants it still submits it again
             else if (!_isFollowing && !IsWaiting)
                 FreeBack();
-            _isBackDone = _awaited != null && !_isFollowing; // it was the last
             _isFrontLost |= IsShown && status.IsNewestLost;
         }
 
-        /// <summary>Shows a surface, or the one that is shown as it looks now.</summary>
+        /// <summary>Shows a surface, or the one that is shown as it looks now; not where there is a reason not to.</summary>
         /// <param name="surface">Stays as it is until it is shown, or refused, or <see cref="Forget"/>.</param>
         /// <param name="look">Of its atoms.</param>
         /// <param name="style">For it.</param>
         /// <param name="isUrgent">Whether it is to be shown at once, without knowing whether it arrives, or refused.</param>
         public GpuStep Show(KeptMesh surface, AtomLook look, MeshStyle style, bool isUrgent)
         {
-            if (Reason.Length > 0)
-                return GpuStep.Refused;
             if (_awaited == surface && !isUrgent)
                 return ShowAwaited(look);
             SurfaceMeshView view = surface.View;
@@ -106,7 +102,6 @@ namespace QuickSes
                 if (mesh == _front || isUrgent)
                     return Draw(mesh, view, look, _given);
                 _awaited = surface;
-                _isBackDone = false;
                 return GpuStep.Waiting;
             }
             catch (Exception e) // the engine has no such buffers, say
@@ -164,7 +159,6 @@ namespace QuickSes
         {
             IGpuTarget target = GpuDelivery.Library.NewTarget();
             ++GpuDelivery.Targets;
-            _done = 0;
             _given = default;
             return target;
         }
@@ -198,13 +192,12 @@ namespace QuickSes
 
         private GpuStep ShowAwaited(AtomLook look)
         {
-            if (!_isBackDone)
-                return GpuStep.Waiting;
+            if (_isFollowing)
+                return GpuStep.Waiting; // it was the last that was submitted
             SurfaceMeshView view = _awaited.View;
             _awaited = null;
             Draw(_back, view, look, _given);
-            if (!_isFollowing)
-                FreeBack();
+            FreeBack();
             return GpuStep.Shown;
         }
 
