@@ -53,6 +53,21 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator NothingComesBackWhereSomebodyHasPutAnother()
+        {
+            MolecularSurface surface = Instance(true);
+            TestMolecules.Blob(30, 1, out Vector3[] positions, out float[] radii);
+            surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            MeshFilter filter = Filter(surface);
+            var other = new Mesh();
+            filter.sharedMesh = other;
+            Object.DestroyImmediate(surface);
+            Assert.That(filter.sharedMesh, Is.SameAs(other));
+            Object.DestroyImmediate(other);
+        }
+
+        [UnityTest]
         public IEnumerator ASurfaceTakesItsPlaceWhenItIsThere()
         {
             MolecularSurface surface = Instance(true);
@@ -76,6 +91,23 @@ namespace QuickSes.Tests
             yield return SurfaceRig.Frames(2);
             Assert.That(Filter(surface).sharedMesh, Is.SameAs(_baked));
             surface.enabled = true;
+            Assert.That(Filter(surface).sharedMesh, Is.SameAs(surface.Mesh));
+
+            // Where there is no surface any more, to the next one.
+            surface.enabled = false;
+            surface.ClearAtoms();
+            Filter(surface).sharedMesh = _baked;
+            surface.enabled = true;
+            yield return SurfaceRig.Frames(2);
+            Assert.That(Filter(surface).sharedMesh, Is.SameAs(_baked));
+            surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            Assert.That(Filter(surface).sharedMesh, Is.SameAs(surface.Mesh));
+
+            // As does none at all.
+            Filter(surface).sharedMesh = null;
+            surface.Recompute();
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
             Assert.That(Filter(surface).sharedMesh, Is.SameAs(surface.Mesh));
         }
 

@@ -53,6 +53,7 @@ namespace QuickSes.Tests
             _rig.Surface.SetAtoms(positions, radii);
             yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
             _rig.GameObject.SetActive(false);
+            Assert.That(SurfaceScheduler.LentCount, Is.EqualTo(0), "others may have the context");
             int levels = _rig.Levels.Count, vertices = _rig.Surface.Mesh.vertexCount;
             yield return SurfaceRig.Frames(5);
             Assert.That(_rig.Levels.Count, Is.EqualTo(levels));

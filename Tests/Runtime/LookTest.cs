@@ -204,6 +204,32 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator OtherAtomsHaveTheirColoursWhenTheyAreShown()
+        {
+            yield return Show(AtomColoring.Texture);
+            int updates = 0;
+            _rig.Surface.SurfaceUpdated += level =>
+            {
+                ++updates;
+                AssertTexels(SomeColors(2), null);
+            };
+            TestMolecules.Blob(Atoms, 2, out Vector3[] positions, out float[] radii);
+            _rig.Surface.SetAtoms(positions, radii);
+            _rig.Surface.SetColors(SomeColors(2));
+            yield return _rig.Settle();
+            Assert.That(updates, Is.GreaterThan(0));
+        }
+
+        [UnityTest]
+        public IEnumerator ARendererWithoutTheComponentHasNoTextureOfIt()
+        {
+            yield return Show(AtomColoring.Texture);
+            AssertTexels(null, null);
+            UnityEngine.Object.DestroyImmediate(_rig.Surface);
+            Assert.That(Block().GetFloat(s_width), Is.EqualTo(0));
+        }
+
+        [UnityTest]
         public IEnumerator SwitchedOffItKeepsItsColours()
         {
             yield return Show(AtomColoring.Texture);

@@ -231,6 +231,17 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void WhatADisabledSurfaceIsAskedForGoesWithIt()
+        {
+            Load(Chains);
+            Surface.enabled = false;
+            Structure structure = Surface.Structure;
+            Assert.That(structure.IsDisposed, Is.False);
+            UnityEngine.Object.DestroyImmediate(_rig.GameObject);
+            Assert.That(structure.IsDisposed);
+        }
+
+        [Test]
         public void TheStructureGoesWithItsAtoms()
         {
             Load(Chains);

@@ -81,6 +81,20 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AMaterialThatWasChosenStays()
+        {
+            var chosen = new Material();
+            var rig = new SurfaceRig();
+            var renderer = rig.GameObject.GetComponent<MeshRenderer>();
+            Assert.That(renderer.sharedMaterial != null, "the usual one");
+            renderer.sharedMaterial = chosen;
+            Engine.Reload();
+            Assert.That(renderer.sharedMaterial, Is.SameAs(chosen));
+            yield return null;
+            rig.Dispose();
+        }
+
+        [UnityTest]
         public IEnumerator EditModeShowsSurfacesToo()
         {
             Engine.EnterEditMode();
@@ -93,12 +107,12 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
-        public IEnumerator PlayModeWithoutReloadBeginsAfresh()
+        public IEnumerator PlayModeWithoutReloadBeginsAfresh([Values] bool isDone)
         {
             Engine.EnterEditMode();
             var edited = new SurfaceRig();
             edited.Surface.SetAtoms(_positions, _radii);
-            yield return SurfaceRig.Frames(3);
+            yield return isDone ? edited.Settle() : SurfaceRig.Frames(3);
             Engine.EnterPlayModeWithoutReload(typeof(MolecularSurface).Assembly);
             Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
             Assert.That(SurfaceScheduler.WaitingCount, Is.EqualTo(0));
@@ -165,6 +179,42 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator InTheSceneOfEditModeASourceComesBeforeWhatAScriptGaveThere()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            rig.Surface.SetAtoms(_positions, _radii);
+            yield return rig.Settle();
+            Assert.That(rig.Surface.AtomCount, Is.EqualTo(_positions.Length));
+            Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            yield return SurfaceRig.Until(() => rig.Surface.AtomCount > 0);
+            Assert.That(rig.Surface.AtomCount, Is.EqualTo(TestFrames.WithoutWater.Length));
+            rig.Dispose();
+        }
+
+        [UnityTest]
+        public IEnumerator InTheSceneOfEditModeNobodyAsksForTheStructureOfAtomsThatAreGone()
+        {
+            Engine.EnterEditMode();
+            var rig = new SurfaceRig();
+            rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            rig.Surface.BeginLoadSource();
+            yield return rig.Settle();
+            Assert.That(rig.Surface.Structure, Is.Not.Null);
+            Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            int lines = 0;
+            void Count(string line, string stack, LogType type) => ++lines;
+            Application.logMessageReceived += Count;
+            Assert.That(rig.Surface.Structure, Is.Null);
+            Application.logMessageReceived -= Count;
+            Assert.That(lines, Is.EqualTo(0), "nobody is told that it can't be read");
+            yield return SurfaceRig.Until(() => rig.Surface.AtomCount > 0);
+            Assert.That(rig.Surface.Structure, Is.Not.Null);
+            rig.Dispose();
+        }
+
+        [UnityTest]
         public IEnumerator AnOpenPrefabStaysAsItIsInPlayMode()
         {
             Engine.EnterEditMode();
@@ -172,7 +222,9 @@ namespace QuickSes.Tests
             Engine.OpenAsPrefab(rig.GameObject);
             rig.Surface.SetAtoms(_positions, _radii);
             yield return rig.Settle();
+            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
             Engine.EnterPlayModeInTheSameScene(typeof(MolecularSurface).Assembly);
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0), "they had the options of edit mode");
             SurfaceMeshes.AssertShows(rig.Surface, _positions, _radii);
             rig.Dispose();
         }
@@ -216,8 +268,13 @@ namespace QuickSes.Tests
             int blocks = NativeHeap.LiveCount(Allocator.Persistent);
             var rig = new SurfaceRig();
             rig.Surface.SetAtoms(_positions, _radii);
-            yield return SurfaceRig.Frames(4);
+            yield return SurfaceRig.Until(() => SurfaceScheduler.ContextCount > 0);
+            int contexts = -1;
+            void Count() => contexts = SurfaceScheduler.ContextCount;
+            Application.quitting += Count; // after the package
             Engine.Quit();
+            Application.quitting -= Count;
+            Assert.That(contexts, Is.EqualTo(0), "before anything of the scene goes");
             Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
             Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(0));
             Assert.That(NativeHeap.LiveCount(NativeHeap.Meshes), Is.EqualTo(0));
