@@ -171,6 +171,17 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator ColoursGoFromATextureIntoTheVertices()
+        {
+            Surface.Coloring = AtomColoring.Texture;
+            yield return _gpu.ShowFirst();
+            Surface.Coloring = AtomColoring.Vertices;
+            yield return _gpu.Rig.Settle();
+            Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
+            GpuRig.AssertDrawn(Surface);
+        }
+
+        [UnityTest]
         public IEnumerator WhatIsHiddenByATextureIsInTheBuffers()
         {
             Surface.Coloring = AtomColoring.Texture;
@@ -316,13 +327,13 @@ namespace QuickSes.Tests
         {
             yield return _gpu.ShowFirst();
             RenderThread.IsRunning = false;
-            for (int factor = 2; factor < 5; ++factor)
+            foreach (float spacing in new[] { 0.4f, 0.3f, 0.2f })
             {
                 int submissions = _gpu.Gpu.Submissions;
                 Surface.enabled = false;
-                Surface.SetAtoms(Spread(_gpu.Start, factor), _gpu.Radii);
+                Surface.Spacing = spacing;
                 Surface.enabled = true;
-                if (factor == 4)
+                if (spacing == 0.2f)
                     RenderThread.IsRunning = true; // two may wait
                 yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
             }

@@ -184,6 +184,7 @@ namespace QuickSes.Tests
         {
             SurfaceScheduler.Delivery = SurfaceDelivery.Host;
             Surface.Coloring = AtomColoring.Vertices;
+            Surface.Spacing = 0.15f;
             yield return _gpu.ShowFirst();
             double budget = SurfaceScheduler.UploadBudget;
             SurfaceScheduler.Delivery = SurfaceDelivery.Device;

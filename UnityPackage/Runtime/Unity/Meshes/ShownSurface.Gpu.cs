@@ -71,7 +71,6 @@ namespace QuickSes
             _isArrivalForGpu = step != GpuStep.Refused; // else it is uploaded
             if (step != GpuStep.Shown)
                 return UploadStep.Unfinished;
-            AbandonUpload(); // of the one before
             _front.FreeMesh();
             _front.Look = null;
             _back.FreeMesh();
