@@ -142,6 +142,18 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AHandlerMayDestroyWhatCantBeRead()
+        {
+            _rig = new SurfaceRig();
+            GameObject doomed = _rig.GameObject;
+            _rig.Surface.Failed += error => Object.DestroyImmediate(doomed);
+            _rig.Surface.Source.SetFile("/no/such/file.pdb"); // which the first frame begins to read
+            yield return SurfaceRig.Until(() => doomed == null);
+            yield return SurfaceRig.Frames(2);
+            Assert.That(_rig.Requests, Is.EqualTo(0));
+        }
+
+        [UnityTest]
         public IEnumerator WhoTriesAgainInFailedIsToldAgainInALaterFrame([Values] bool atOnce)
         {
             _rig = new SurfaceRig();

@@ -206,18 +206,15 @@ namespace QuickSes.Tests
         [UnityTest]
         public IEnumerator OtherAtomsHaveTheirColoursWhenTheyAreShown()
         {
-            yield return Show(AtomColoring.Texture);
-            int updates = 0;
-            _rig.Surface.SurfaceUpdated += level =>
-            {
-                ++updates;
-                AssertTexels(SomeColors(2), null);
-            };
+            _rig = SurfaceRig.WithBlob(Atoms + 1, 1);
+            _rig.Surface.Coloring = AtomColoring.Texture;
+            yield return _rig.Settle();
+            int before = _rig.Levels.Count;
             TestMolecules.Blob(Atoms, 2, out Vector3[] positions, out float[] radii);
             _rig.Surface.SetAtoms(positions, radii);
             _rig.Surface.SetColors(SomeColors(2));
-            yield return _rig.Settle();
-            Assert.That(updates, Is.GreaterThan(0));
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > before);
+            AssertTexels(SomeColors(2), null); // in the same frame
         }
 
         [UnityTest]

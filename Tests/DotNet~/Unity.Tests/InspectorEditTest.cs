@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using System.Collections;
+using UnityEngine;
 using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
@@ -32,6 +33,35 @@ namespace QuickSes.Tests
             Inspector.Set(_rig.Surface, "_levels", levels);
             yield return _rig.Settle();
             Assert.That(_rig.Surface.CurrentLevel.LevelCount, Is.EqualTo(3));
+        }
+
+        [UnityTest]
+        public IEnumerator WhichAtomsAreShownIsFollowed()
+        {
+            _rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            Assert.That(_rig.Surface.LoadSource());
+            _rig.Surface.Coloring = AtomColoring.Vertices; // triangles are left out
+            yield return _rig.Settle();
+            uint all = _rig.Surface.Mesh.GetIndexCount(0);
+            Inspector.Set(_rig.Surface, "_visible", "//A/1/CA");
+            yield return SurfaceRig.Frames(2);
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.VisibleSelectionError, Is.Empty);
+            Assert.That(_rig.Surface.Mesh.GetIndexCount(0), Is.InRange(3, all - 3));
+        }
+
+        [UnityTest]
+        public IEnumerator AnEditIsFollowedOnce()
+        {
+            yield return _rig.Settle();
+            Inspector.Set(_rig.Surface, "_frameBudget", 10f);
+            yield return SurfaceRig.Frames(2);
+            var filter = _rig.GameObject.GetComponent<MeshFilter>();
+            var theirs = new Mesh();
+            filter.sharedMesh = theirs;
+            yield return SurfaceRig.Frames(2);
+            Assert.That(filter.sharedMesh, Is.SameAs(theirs));
+            Object.DestroyImmediate(theirs);
         }
 
         [UnityTest]
