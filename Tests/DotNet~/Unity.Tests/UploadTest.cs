@@ -85,7 +85,12 @@ namespace QuickSes.Tests
             _uploader.Upload(Compute(60), _mesh, true);
             MeshRecord.Of(_mesh).Clear();
             _uploader.Upload(Compute(20), _mesh, true);
-            _uploader.Upload(Compute(60), _mesh, true);
+            SurfaceMeshView largest = Compute(60);
+            _uploader.Upload(largest, _mesh, true);
+            int vertices = largest.VertexCount;
+            SurfaceMeshView larger = Compute(64);
+            Assert.That(larger.VertexCount, Is.InRange(vertices + 1, vertices * 5 / 4), "by less than the room there is");
+            _uploader.Upload(larger, _mesh, true);
             Assert.That(MeshRecord.Of(_mesh).VertexParamsCalls, Is.EqualTo(0));
             Assert.That(MeshRecord.Of(_mesh).IndexParamsCalls, Is.EqualTo(0));
             _uploader.Upload(Compute(200), _mesh, true);
