@@ -31,9 +31,10 @@ BOOL WINAPI on_stop(DWORD) {
 
 #else
 
-bool is_ignored(int signal_number) {  // as by nohup
+// Not if it is ignored, as by nohup, or if a library loaded before has a use for it.
+bool ends_the_program(int signal_number) {
   struct sigaction action;
-  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+  return sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_DFL;
 }
 
 // Dies by the signal, as the shell expects it, but after cleaning up. A thread may do what a handler of signals may
@@ -70,8 +71,9 @@ void prepare_for_stopping() {
   for (int signal_number : {SIGPIPE, SIGXFSZ}) signal(signal_number, SIG_IGN);
   sigset_t signals;
   sigemptyset(&signals);
-  for (int signal_number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU})
-    if (!is_ignored(signal_number)) sigaddset(&signals, signal_number);
+  // Batch systems tell of the end of a job's time by SIGUSR1 or SIGUSR2; an alarm may have been set before exec.
+  for (int signal_number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM})
+    if (ends_the_program(signal_number)) sigaddset(&signals, signal_number);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // in all threads to come
   try {
     std::thread(wait_for_stop, signals).detach();

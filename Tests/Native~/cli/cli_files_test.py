@@ -298,10 +298,13 @@ class TwoAtATime(FilesTest):
         self.assertEqual(list(self.folder.glob(".*")), [])
 
 
+STOPPING = ["SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM"]  # Windows has not all of them
+
+
 def listen_to_signals():
     """Also where these tests were begun with nohup, say, whose children ignore what it ignores."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
+    for name in STOPPING:
+        signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
 @unittest.skipIf(IS_WINDOWS, "no signals")
@@ -324,7 +327,7 @@ class Stopped(FilesTest):
         return process
 
     def test_by_signals(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in (getattr(signal, name) for name in STOPPING):
             with self.subTest(signal=number):
                 process = self.start(stderr=subprocess.PIPE)
                 process.send_signal(number)
