@@ -358,7 +358,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     std::string message = error.what();
     for (char &c : message)
       if (c == '\n') c = ' ';
-    throw Failure(kUsage, message);
+    throw Failure(kUsage, explain_count(message));
   }
   const CLI::App *used = &app;
   const std::pair<const CLI::App *, Options::Command> commands[] = {{measure, Options::Command::kMeasure},

@@ -90,4 +90,16 @@ std::string explain_extra(const CLI::App &command, const std::vector<std::string
          (io::find_mesh_format(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
 }
 
+std::string explain_count(const std::string &sentence) {
+  const std::string flag = sentence.substr(0, sentence.find(':'));
+  const std::string too_often = ": At Most 1 required but received ", before_value = ": 1 required ",
+                    missing = " missing";
+  if (sentence.compare(flag.size(), too_often.size(), too_often) == 0)
+    return flag + ": it is given " + sentence.substr(flag.size() + too_often.size()) + " times, which can be once only";
+  const size_t value = flag.size() + before_value.size(), rest = value + missing.size();
+  if (sentence.compare(flag.size(), before_value.size(), before_value) == 0 && sentence.size() > rest)
+    return flag + ": its value is missing: " + flag + " " + sentence.substr(value, sentence.size() - rest);
+  return sentence;
+}
+
 }  // namespace quickses::cli

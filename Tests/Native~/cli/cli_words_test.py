@@ -41,6 +41,12 @@ class Suggestions(ProgramTest):
         self.assert_fails(USAGE, ["--repeat", "no such flag", "quickses measure --help"], "measure", CRAMBIN, "--repeat", "3")
         self.assert_fails(USAGE, ["--xyzzy", "no such flag", "quickses --help"], CRAMBIN, "--xyzzy")
 
+    def test_flags_without_a_value_and_given_twice(self):
+        self.assert_fails(USAGE, ["--spacing: its value is missing: --spacing A"], CRAMBIN, "-v")
+        self.assert_fails(USAGE, ["--json: its value is missing: --json FILE|-"], "measure", CRAMBIN, "--json")
+        self.assert_fails(USAGE, ["--spacing: it is given 3 times"], CRAMBIN, "-v", "1", "--spacing", "2", "-v3")
+        self.assert_fails(USAGE, ["--output: it is given 2 times"], CRAMBIN, "-o", "a.ply", "-o", "b.ply")
+
     def test_an_output_without_its_flag(self):
         for name in ("out.ply", "out.obj", "out.stl"):
             self.assert_suggests("-o " + name, CRAMBIN, name)
