@@ -3,6 +3,7 @@
 #include "capi/atoms_in.h"
 
 #include "capi/barrier.h"
+#include "capi/structs.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -22,12 +23,10 @@ constexpr float kLargestCoordinate = 1e6f;
 constexpr float kLargestRadius = 100.f;
 
 [[noreturn]] void bad_position(size_t atom, const glm::vec3 &p) {
-  char text[160];
   const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-  std::snprintf(text, sizeof text, "position of atom %zu is (%g, %g, %g): %s", atom, static_cast<double>(p[0]),
-                static_cast<double>(p[1]), static_cast<double>(p[2]),
-                finite ? "coordinates must lie within 1e6 Å of the origin" : "coordinates must be finite");
-  invalid(text);
+  const auto text = [&p](int axis) { return number_text(static_cast<double>(p[axis])); };
+  invalid("position of atom " + std::to_string(atom) + " is (" + text(0) + ", " + text(1) + ", " + text(2) +
+          "): " + (finite ? "coordinates must lie within 1e6 Å of the origin" : "coordinates must be finite"));
 }
 
 }  // namespace
@@ -249,12 +248,9 @@ AtomRadii check_radii(const float *radii, size_t count) {
   require(radii, "radii");
   float largest = 0.f;
   for (size_t i = 0; i < count; ++i) {
-    if (!(radii[i] > 0.f && radii[i] <= kLargestRadius)) {
-      char text[128];
-      std::snprintf(text, sizeof text, "radius of atom %zu is %g: it must be above 0 and at most 100 Å", i,
-                    static_cast<double>(radii[i]));
-      invalid(text);
-    }
+    if (!(radii[i] > 0.f && radii[i] <= kLargestRadius))
+      invalid("radius of atom " + std::to_string(i) + " is " + number_text(static_cast<double>(radii[i])) +
+              ": it must be above 0 and at most 100 Å");
     largest = radii[i] > largest ? radii[i] : largest;
   }
   return tell_large_atoms(radii, count, largest);

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 using quickses::check_atom_count;
@@ -19,6 +18,7 @@ using quickses::check_choice;
 using quickses::check_struct;
 using quickses::guarded;
 using quickses::invalid;
+using quickses::number_text;
 using quickses::read_struct;
 using quickses::require;
 using quickses::write_struct;
@@ -27,9 +27,8 @@ namespace {
 
 void check_range(const char *name, double value, double low, double high, const char *unit) {
   if (value >= low && value <= high) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "%s is %g: it must lie between %g and %g%s", name, value, low, high, unit);
-  invalid(text);
+  invalid(std::string(name) + " is " + number_text(value) + ": it must lie between " + number_text(low) + " and " +
+          number_text(high) + unit);
 }
 
 void check_settings(const qses_settings &s) {

@@ -6,8 +6,11 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -72,6 +75,17 @@ void check_choice(const char *name, const Choice &given, Choice last) {
   std::memcpy(&value, &given, sizeof value);
   if (value < 0 || value > static_cast<int32_t>(last))
     invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
+}
+
+// A float, or a whole number, with the digits that tell it from its neighbours: 100.000008, not the 100 that it
+// exceeds.
+inline std::string number_text(double value) {
+  char text[32];
+  const bool whole = value == std::floor(value) && std::fabs(value) < 1e15;
+  int digits = whole ? 16 : 6;
+  do std::snprintf(text, sizeof text, "%.*g", digits, value);
+  while (++digits <= 9 && std::strtof(text, nullptr) != static_cast<float>(value));
+  return text;
 }
 
 // The k-th of some things. name: of one.

@@ -286,6 +286,28 @@ TEST(Atoms, OneIsSingular) {
   EXPECT_STREQ(qses_last_error(), "indices[0] is 1 but there is 1 position");
 }
 
+TEST(LastError, NumbersDifferFromTheLimitThatTheyExceed) {
+  const Context context;
+  Atoms atoms = Atoms().add(0, 0, 0, 1);
+  atoms.radii[0] = std::nextafter(100.f, kInf);
+  EXPECT_EQ(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), 1), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), u8"radius of atom 0 is 100.00001: it must be above 0 and at most 100 \u00c5");
+  atoms = Atoms().add(std::nextafter(1e6f, kInf), 0.1f, 0, 1);
+  EXPECT_EQ(qses_set_atoms(context, atoms.positions.data(), 0, atoms.radii.data(), 1), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(),
+               u8"position of atom 0 is (1000000.06, 0.1, 0): coordinates must lie within 1e6 \u00c5 of the origin");
+  set_atoms(context, Atoms().add(0, 0, 0, 1));
+  qses_settings settings;
+  qses_settings_init(&settings);
+  settings.relaxation_steps = UINT32_MAX;
+  EXPECT_EQ(qses_compute(context, &settings, nullptr), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "settings.relaxation_steps is 4294967295: it must lie between 0 and 100");
+  qses_settings_init(&settings);
+  settings.gaussian_radius_scale = std::nextafter(0.05f, 0.f);
+  EXPECT_EQ(qses_compute(context, &settings, nullptr), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "settings.gaussian_radius_scale is 0.049999997: it must lie between 0.05 and 10");
+}
+
 TEST(Atoms, AreCopied) {
   const Context context;
   auto atoms = std::make_unique<Atoms>(water());
