@@ -95,7 +95,8 @@ std::string explain_count(const std::string &sentence) {
   const std::string too_often = ": At Most 1 required but received ", before_value = ": 1 required ",
                     missing = " missing";
   if (sentence.compare(flag.size(), too_often.size(), too_often) == 0)
-    return flag + ": it is given " + sentence.substr(flag.size() + too_often.size()) + " times, which can be once only";
+    return flag + ": it is given " + sentence.substr(flag.size() + too_often.size()) +
+           " times, and can be given only once";
   const size_t value = flag.size() + before_value.size(), rest = value + missing.size();
   if (sentence.compare(flag.size(), before_value.size(), before_value) == 0 && sentence.size() > rest)
     return flag + ": its value is missing: " + flag + " " + sentence.substr(value, sentence.size() - rest);

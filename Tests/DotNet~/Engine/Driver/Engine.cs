@@ -54,6 +54,7 @@ namespace QuickSes.EngineDouble
             for (int i = ObjectRegistry.Objects.Count; i-- > 0; i = Math.Min(i, ObjectRegistry.Objects.Count))
                 ObjectRegistry.Objects[i].DestroyNow();
             DestructionQueue.Clear();
+            GraphicsMemory.Refusal = null;
             Resources.Assets.Clear();
             Time.Reset();
             BeforeReload = null;
