@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace {
 
@@ -127,6 +128,24 @@ TEST(Components, OfFarSpheres) {
         EXPECT_EQ(found[k].is_cavity, 0);
       }
     }
+}
+
+// Many steps at a coarse spacing leave next to nothing of a small atom, some of it inside out.
+TEST(Components, ThatAreTurnedInsideOutAreNoCavities) {
+  const Context context;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> somewhere(0, 2);
+  qses_settings s = with_components(settings(2));
+  s.relaxation_steps = 10;
+  int inside_out[2] = {0, 0};
+  for (int k = 0; k < 80; ++k) {
+    const double x = somewhere(random), y = somewhere(random), z = somewhere(random);
+    set_atoms(context, Atoms().add(x, y, z, 1.2));
+    s.winding = k % 2 ? QSES_WINDING_REVERSED : QSES_WINDING_OUTWARD;
+    for (const qses_component &c : components_of(context, s)) EXPECT_EQ(c.is_cavity, 0) << x << " " << y << " " << z;
+    inside_out[k % 2] += report_of(context).triangle_volume < 0 ? 1 : 0;
+  }
+  for (const int n : inside_out) EXPECT_GT(n, 0);
 }
 
 TEST(Components, OfAHollowShell) {

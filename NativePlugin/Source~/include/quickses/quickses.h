@@ -346,7 +346,8 @@ typedef struct qses_settings {
                          how fine the mesh is. What lies between its points is missing: at 2 Å, an ion that touches
                          nothing may be. 0.001 to 100; default 0.5 */
   uint32_t relaxation_steps; /* default 1, at most 100. EXACT: tangential smoothing, each step projected back onto the
-                                exact surface. GRID: Laplacian smoothing as in the paper, which moves off it */
+                                exact surface; what is no wider than a few spacings may lose area to it. GRID: Laplacian
+                                smoothing as in the paper, which moves off it */
   uint32_t slice_size;   /* 0 (default): work on as much at a time as memory allows. Else at least 8: in slices of at
                             most slice_size³ lattice points; the mesh is the same byte for byte. Smaller slices need
                             less memory with CUDA; on the CPU they change little */
@@ -445,8 +446,9 @@ typedef struct qses_component {
   uint64_t triangles;
   double area;         /* Å², through the normals as qses_report.area of the SES */
   double volume;       /* Å³, enclosed, through the normals as well; negative for a cavity, whatever the winding */
-  qses_bool is_cavity; /* whether its triangles enclose a negative volume; only of specks that enclose next to nothing
-                          may `volume` say otherwise */
+  qses_bool is_cavity; /* whether its triangles enclose a negative volume, and face where their normals point to: else
+                          it is a speck that was turned inside out (settings.relaxation_steps). Only of what encloses
+                          next to nothing may `volume` say otherwise */
   float center[3];     /* Å, centre of the volume that its triangles enclose; of its box if that is next to nothing */
   float bounds_min[3]; /* box of its vertices, Å */
   float bounds_max[3];

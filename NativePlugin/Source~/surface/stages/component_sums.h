@@ -35,6 +35,7 @@ struct ComponentSums {
   uint64_t triangles;
   ExactSum area, volume;
   ExactSum flat_area, flat_volume, moment[3];  // of the triangles as they are
+  ExactSum facing;                             // facing_area(), where normals bend the triangles
   uint32_t most[6];                            // greatest x, y, z and -x, -y, -z, as ordered bits
   float first[3];                              // the first vertex
   uint32_t extra;                              // of the first component: what comes along
@@ -69,6 +70,7 @@ QSES_FN void add_sums(const ComponentSums &from, ComponentSums *to) {
   atomic_add(&to->volume, from.volume);
   atomic_add(&to->flat_area, from.flat_area);
   atomic_add(&to->flat_volume, from.flat_volume);
+  atomic_add(&to->facing, from.facing);
   for (int d = 0; d < 3; ++d) atomic_add(to->moment + d, from.moment[d]);
   for (int d = 0; d < 6; ++d) atomic_max(to->most + d, from.most[d]);
 }
@@ -174,6 +176,7 @@ struct SumComponents {
     own_sums.volume.add(rounded_product(t.volume, per_volume), units);
     own_sums.flat_area.add(rounded_product(t.flat_area, per_area), units);
     own_sums.flat_volume.add(flat_volume, units);
+    if (bent) own_sums.facing.add(rounded_product(facing_area(mesh, triangle), per_area), units);
     for (int k = 0; k < 3; ++k) {
       double sum = -3.0 * (k == 0 ? origin.x : k == 1 ? origin.y : origin.z);
       for (int corner = 0; corner < 3; ++corner) {
@@ -208,7 +211,9 @@ inline qses_component describe_component(const ComponentSums &s, double units, d
   c.triangles = s.triangles;
   c.area = measured.area;
   c.volume = measured.volume;
-  c.is_cavity = measured.flat_volume < 0 ? 1 : 0;  // what bounds a hollow in the mesh, however small
+  // What bounds a hollow in the mesh, however small; but no speck that its relaxation has turned inside out, away from
+  // its normals.
+  c.is_cavity = measured.flat_volume < 0 && s.facing.value(units) >= 0 ? 1 : 0;
   bool is_within = true;
   double center[3];
   for (int d = 0; d < 3; ++d) {

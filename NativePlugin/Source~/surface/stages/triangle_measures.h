@@ -197,6 +197,13 @@ QSES_FN TriangleSums measure_triangle(const MeshView &mesh, size_t t, const Vec3
   return measure_corners(CornersOfOne{mesh, outward_corners(mesh, mesh.triangle(t))}, origin, bent,
                          mesh.second_normals != nullptr);
 }
+// How much area of a triangle faces where the normals of its corners point to: negative if it is turned away.
+QSES_FN double facing_area(const MeshView &mesh, const uint32_t *triangle) {
+  const CornersOfOne corners{mesh, outward_corners(mesh, triangle)};
+  const Vec3<double> at = corners.position(0),
+                     normal = cross_product(corners.position(1) - at, corners.position(2) - at);
+  return rounded_product(1.0 / 6.0, dot_product(normal, corners.normal(0) + corners.normal(1) + corners.normal(2)));
+}
 struct MeasureTriangle {
   MeshView mesh;
   Vec3<double> origin;
