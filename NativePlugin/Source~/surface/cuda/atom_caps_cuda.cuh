@@ -108,24 +108,22 @@ __device__ __forceinline__ bool lies_within_another(const CapRows &rows, int n, 
   return within;
 }
 
-// Closes the gaps that contained caps leave; returns how many stay.
-__device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
+// Keeps the caps for which stays(cap, sine, neighbor) holds, without gaps; returns how many.
+template <class Stays>
+__device__ __forceinline__ int keep_caps(const CapRows &rows, int n, const Stays &stays) {
   const int lane = lane_id();
   int kept = 0;
+#pragma unroll 1
   for (int first = 0; first < n; first += kWarp) {
-    const int j = first + lane;
-    Cap cap{};
-    float sine = 0.f;
-    uint32_t neighbor = kContainedCap;
-    if (j < n) {
-      cap = rows.cap[j];
-      sine = rows.sine[j];
-      neighbor = rows.neighbor[j];
-    }
-    const bool stays = !(neighbor & kContainedCap);
-    const int place = append_place(stays, &kept);
-    __syncwarp();
-    if (stays) {
+    const bool on = first + lane < n;
+    const int j = on ? first + lane : first;
+    const Cap cap = rows.cap[j];
+    const float sine = rows.sine[j];
+    const uint32_t neighbor = rows.neighbor[j];
+    const bool keep = on & stays(cap, sine, neighbor);
+    const int place = append_place(keep, &kept);
+    __syncwarp();  // all are read
+    if (keep) {
       rows.cap[place] = cap;
       rows.sine[place] = sine;
       rows.neighbor[place] = neighbor;
@@ -133,6 +131,9 @@ __device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
     __syncwarp();
   }
   return kept;
+}
+__device__ __forceinline__ int keep_free_caps(const CapRows &rows, int n) {
+  return keep_caps(rows, n, [](const Cap &, float, uint32_t neighbor) { return (neighbor & kContainedCap) == 0; });
 }
 
 // Drops caps that lie within one of eight large ones, each the largest of some; returns how many stay. Most that lie
@@ -162,30 +163,14 @@ __device__ __forceinline__ int drop_caps_within_large(const CapRows &rows, int n
     large_sine[lane / kLanes] = rows.sine[largest];
   }
   __syncwarp();
-  int kept = 0;
-#pragma unroll 1
-  for (int first = 0; first < n; first += kWarp) {
-    const bool on = first + lane < n;
-    const int j = on ? first + lane : first;
-    const Cap cap = rows.cap[j];
-    const float sine = rows.sine[j];
-    const uint32_t neighbor = rows.neighbor[j];
+  return keep_caps(rows, n, [&](const Cap &cap, float sine, uint32_t) {
     bool within = false;
 #pragma unroll
     for (int g = 0; g < kLarge; ++g)
       within |= cap_contains(large[g].cosine, large_sine[g], cap.cosine, sine,
                              dot(Vec3<float>(large[g].axis), Vec3<float>(cap.axis)));
-    const bool stays = on && !within;
-    const int place = append_place(stays, &kept);
-    __syncwarp();  // all are read
-    if (stays) {
-      rows.cap[place] = cap;
-      rows.sine[place] = sine;
-      rows.neighbor[place] = neighbor;
-    }
-    __syncwarp();
-  }
-  return kept;
+    return !within;
+  });
 }
 
 // Marks those of the caps from `first` on that lie within another one, so many lanes for each.
