@@ -43,9 +43,7 @@ namespace QuickSes.Tests
         public IEnumerator ItComesBackWhenTheComponentIsRemoved()
         {
             MolecularSurface surface = Instance(true);
-            TestMolecules.Blob(30, 1, out Vector3[] positions, out float[] radii);
-            surface.SetAtoms(positions, radii);
-            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            yield return ShowBlob(surface);
             MeshFilter filter = Filter(surface);
             Assert.That(filter.sharedMesh, Is.SameAs(surface.Mesh));
             Object.DestroyImmediate(surface);
@@ -56,9 +54,7 @@ namespace QuickSes.Tests
         public IEnumerator NothingComesBackWhereSomebodyHasPutAnother()
         {
             MolecularSurface surface = Instance(true);
-            TestMolecules.Blob(30, 1, out Vector3[] positions, out float[] radii);
-            surface.SetAtoms(positions, radii);
-            yield return SurfaceRig.Until(() => !surface.IsBusy);
+            yield return ShowBlob(surface);
             MeshFilter filter = Filter(surface);
             var other = new Mesh();
             filter.sharedMesh = other;
@@ -133,6 +129,13 @@ namespace QuickSes.Tests
             surface.enabled = true;
             yield return SurfaceRig.Frames(3);
             Assert.That(Filter(surface).sharedMesh, Is.SameAs(_baked));
+        }
+
+        private static IEnumerator ShowBlob(MolecularSurface surface)
+        {
+            TestMolecules.Blob(30, 1, out Vector3[] positions, out float[] radii);
+            surface.SetAtoms(positions, radii);
+            yield return SurfaceRig.Until(() => !surface.IsBusy);
         }
 
         private static MeshFilter Filter(MolecularSurface surface) => surface.GetComponent<MeshFilter>();

@@ -77,7 +77,7 @@ void check_choice(const char *name, const Choice &given, Choice last) {
     invalid(std::string(name) + " is " + std::to_string(value) + ", which names nothing in the header");
 }
 
-// A float, or a whole number, with the digits that tell it from its neighbours: 100.000008, not the 100 that it
+// A float, or a whole number, with the digits that tell it from its neighbours: 100.00001, not the 100 that it
 // exceeds.
 inline std::string number_text(double value) {
   char text[32];

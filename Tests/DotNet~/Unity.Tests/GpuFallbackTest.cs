@@ -82,11 +82,7 @@ namespace QuickSes.Tests
         {
             if (!isFirst)
                 yield return _gpu.ShowFirst();
-            RenderThread.IsRunning = false;
-            Engine.ChecksMeshes = false;
-            int submissions = _gpu.Gpu.Submissions;
-            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
-            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            yield return SubmitUndrawn();
             _gpu.Gpu.LosePatience();
             yield return _gpu.Rig.Settle();
             AssertByHost("No event");
@@ -106,11 +102,8 @@ namespace QuickSes.Tests
         {
             if (!isFirst)
                 yield return _gpu.ShowFirst();
-            RenderThread.IsRunning = false;
-            Engine.ChecksMeshes = false;
             int submissions = _gpu.Gpu.Submissions;
-            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
-            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            yield return SubmitUndrawn();
             _gpu.Gpu.LosePatience();
             GpuDelivery.Issue();
             RenderThread.IsRunning = true;
@@ -127,14 +120,7 @@ namespace QuickSes.Tests
         public IEnumerator WhileTooManyWaitNothingNewerIsTaken()
         {
             yield return _gpu.ShowFirst();
-            RenderThread.IsRunning = false;
-            Engine.ChecksMeshes = false;
-            for (int frame = 0; frame < 2; ++frame) // as many as may wait
-            {
-                int before = _gpu.Rig.Levels.Count;
-                Surface.SetPositions(_gpu.Moved(frame));
-                yield return SurfaceRig.Until(() => _gpu.Rig.Levels.Count > before);
-            }
+            yield return SubmitAsManyAsMayWait();
             int submissions = _gpu.Gpu.Submissions, updates = _gpu.Rig.Levels.Count;
             Surface.SetPositions(_gpu.Moved(2));
             yield return SurfaceRig.Until(() => SurfaceScheduler.LentCount == 0);
@@ -158,14 +144,7 @@ namespace QuickSes.Tests
         public IEnumerator WhileTooManyWaitComputeNowTakesHostMemory()
         {
             yield return _gpu.ShowFirst();
-            RenderThread.IsRunning = false;
-            Engine.ChecksMeshes = false;
-            for (int frame = 0; frame < 2; ++frame) // as many as may wait
-            {
-                int before = _gpu.Rig.Levels.Count;
-                Surface.SetPositions(_gpu.Moved(frame));
-                yield return SurfaceRig.Until(() => _gpu.Rig.Levels.Count > before);
-            }
+            yield return SubmitAsManyAsMayWait();
             Surface.SetPositions(_gpu.Moved(2));
             Assert.That(Surface.ComputeNow());
             Assert.That(Surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Host));
@@ -248,11 +227,7 @@ namespace QuickSes.Tests
         {
             if (!isFirst)
                 yield return _gpu.ShowFirst();
-            RenderThread.IsRunning = false;
-            Engine.ChecksMeshes = false;
-            int submissions = _gpu.Gpu.Submissions;
-            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
-            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+            yield return SubmitUndrawn();
             SurfaceScheduler.Delivery = SurfaceDelivery.Host;
             yield return _gpu.Rig.Settle();
             Engine.ChecksMeshes = true;
@@ -391,6 +366,28 @@ namespace QuickSes.Tests
             SurfaceScheduler.ResetOptions();
             Assert.That(SurfaceScheduler.Delivery, Is.EqualTo(SurfaceDelivery.Host));
             Assert.That(Surface.DeliveryReason, Does.Contain("Host"));
+        }
+
+        // Of what nobody draws, meshes are not checked.
+        private IEnumerator SubmitUndrawn()
+        {
+            RenderThread.IsRunning = false;
+            Engine.ChecksMeshes = false;
+            int submissions = _gpu.Gpu.Submissions;
+            Surface.SetAtoms(_gpu.Moved(1), _gpu.Radii);
+            yield return SurfaceRig.Until(() => _gpu.Gpu.Submissions > submissions);
+        }
+
+        private IEnumerator SubmitAsManyAsMayWait()
+        {
+            RenderThread.IsRunning = false;
+            Engine.ChecksMeshes = false;
+            for (int frame = 0; frame < 2; ++frame)
+            {
+                int before = _gpu.Rig.Levels.Count;
+                Surface.SetPositions(_gpu.Moved(frame));
+                yield return SurfaceRig.Until(() => _gpu.Rig.Levels.Count > before);
+            }
         }
 
         private void AssertOnGpu()
