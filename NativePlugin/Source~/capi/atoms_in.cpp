@@ -147,7 +147,7 @@ size_t copy_in_fours(const float *, const float *, size_t, Sphere *, bool, Met *
 
 constexpr size_t kChunk = size_t(1) << 13;  // for a thread at a time
 // So many go past the caches: what a GPU fetches is in none, and to get it there takes longer than to write it.
-constexpr size_t kManyForGpu = 2 * kChunk, kManyForCpu = size_t(1) << 17;  // 2 MB
+constexpr size_t kManyForGpu = size_t(1) << 11, kManyForCpu = size_t(1) << 17;  // 2 MB
 
 // From first to last, of the positions at(i), each a pointer to three floats.
 template <class At>

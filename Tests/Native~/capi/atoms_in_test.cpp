@@ -152,8 +152,10 @@ TEST(AtomsIn, MayBeMany) {
   }
 }
 
+// Or are written past the caches by one thread, or not even that.
 TEST(AtomsIn, AreSharedOutInWholeChunksOrNot) {
-  for (const size_t count : {size_t(16383), size_t(16384), size_t(16385), size_t(24576)}) {
+  for (const size_t count :
+       {size_t(2047), size_t(2049), size_t(8193), size_t(16383), size_t(16384), size_t(16385), size_t(24576)}) {
     SCOPED_TRACE(count);
     Given given(count);
     const Copied alone = copy_by(nullptr, given);
@@ -162,7 +164,8 @@ TEST(AtomsIn, AreSharedOutInWholeChunksOrNot) {
       EXPECT_EQ(copied.bounds.low, alone.bounds.low);
       EXPECT_EQ(copied.bounds.high, alone.bounds.high);
     }
-    for (const size_t atom : {size_t(0), size_t(8191), size_t(8192), count - 1}) {
+    for (const size_t atom :
+         {size_t(0), std::min(count, size_t(8192)) - 1, std::min(count - 1, size_t(8192)), count - 1}) {
       const float right = given.positions[3 * atom];
       given.positions[3 * atom] = kInf;
       expect_refused(copy, given, atom);
