@@ -3,6 +3,7 @@
 // that was. A template over the executor: cpu_engine.cpp and cuda_engine.cu make one of each.
 #pragma once
 
+#include "surface/frame_history.h"
 #include "surface/frame_levels.h"
 #include "surface/methods/size_estimate.h"
 
@@ -41,12 +42,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const auto attempt = [&](const MemoryPlan &plan) {
       const uint32_t attempts = course.attempts++;
       if (attempts == 0) expect_memory(in);
-      executor_.open_counts(may_anticipate(in, plan) ? kind_of(in) : 0,
-                            learnt_.is_proven && learnt_.milliseconds < kShortFrame);
+      executor_.open_counts(may_anticipate(in, plan) ? kind_of(in) : 0, history_.takes_less_than(kShortFrame));
       try {
         is_beside_ = may_be_beside(in, plan, spacings);
-        const PlannedFrame frame{in,          plan,          spacings, is_beside_, learnt_.milliseconds > first_alone,
-                                 kind_of(in), atoms_.bytes()};
+        const PlannedFrame frame{
+            in, plan, spacings, is_beside_, history_.takes_more_than(first_alone), kind_of(in), atoms_.bytes()};
         levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
           spacing_ = spacing;
           if (work.makes_mesh) check_forecast(work, in, &plan == kMemoryPlans + kMemoryPlanCount - 1);
@@ -57,10 +57,9 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       }
     };
     const auto start = std::chrono::steady_clock::now();
+    history_.begin(settings, spacings);
     walk(in, sink.stop_flag(), attempt);
-    learnt_.milliseconds = milliseconds_since(start);
-    learnt_.is_settled = learnt_.is_proven;
-    learnt_.is_proven = true;
+    history_.end(milliseconds_since(start));
     if (makes_mesh(in) && is_exact(settings)) learnt_.has_made_mesh = true;
   }
 
@@ -151,7 +150,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
         if (is_beside_)
           note_loneliness();  // the same again, one level after the other
         else if (had_lanes)
-          learnt_.is_settled = false;  // the same again, with what they had
+          history_.unsettle();  // the same again, with what they had
         else if (executor_.has_anticipated())
           note_tightness();  // the same again, without the room for more than there is
         else if (lacked_room)
@@ -162,7 +161,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
           step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
         // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
-        if (is_for_device(in.settings.delivery)) learnt_ = {};
+        if (is_for_device(in.settings.delivery)) forget();
         name_smallest_budget(in);
         throw;
       }
@@ -178,7 +177,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   // Whether the levels of a ladder are made beside each other: where none is expected to wait.
   bool may_be_beside(const FrameInput &in, const MemoryPlan &plan, Span<const float> spacings) {
     return Executor::kIsCuda && spacings.size > 1 && in.atoms.count > 0 && !takes_times_ && may_anticipate(in, plan) &&
-           learnt_.is_settled && !learnt_.is_lone && learnt_.milliseconds < short_ladder;
+           history_.is_settled() && !learnt_.is_lone && history_.takes_less_than(short_ladder);
   }
   // What frames have in common whose counts are much the same. Never 0.
   uint64_t kind_of(const FrameInput &in) const {
@@ -197,7 +196,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const SurfaceParameters p = parameters_of(in);
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach) levels_.rooms.forget();
     if (in.atoms.count != learnt_.atoms || p.max_radius != learnt_.reach || p.spacing != learnt_.spacing) {
-      learnt_ = {};
+      forget();
       learnt_.atoms = in.atoms.count;
       learnt_.reach = p.max_radius;
       learnt_.spacing = p.spacing;
@@ -208,6 +207,11 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       learnt_.is_tight = learnt_.is_lone = false;
     }
     return learnt_.step;
+  }
+
+  void forget() {
+    learnt_ = {};
+    history_.forget();
   }
 
   void note_tightness() {
@@ -236,7 +240,8 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
     learnt_.step = std::min(step, kMemoryPlanCount - 1);
     learnt_.share = executor_.arena().share();
-    learnt_.is_proven = learnt_.is_settled = learnt_.has_made_mesh = false;
+    learnt_.has_made_mesh = false;
+    history_.forget();
     return step;
   }
 
@@ -359,17 +364,16 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
-  // other, whether that did, and did again, so that memory is held as it will be, and did for an exact mesh; and what
-  // splits of creases found.
+  // other, whether that did for an exact mesh; and what splits of creases found.
   struct Learnt {
     size_t atoms = 0;
     float reach = 0, spacing = 0;
     size_t step = 0;
     uint64_t share = 0;
-    bool is_tight = false, is_lone = false, is_proven = false, is_settled = false, has_made_mesh = false;
-    double milliseconds = 0;
+    bool is_tight = false, is_lone = false, has_made_mesh = false;
     FoundSplits found{};
   } learnt_;
+  FrameHistory history_;
   float spacing_ = 0;  // of the level that is being made
 };
 
