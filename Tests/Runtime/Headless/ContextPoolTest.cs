@@ -153,6 +153,31 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void OneThatCouldNotBeMadeTakesNobodysPlace()
+        {
+            SurfaceScheduler.ReleaseContexts();
+            SurfaceScheduler.MaxContexts = 1;
+            _hosts = Hosts(1, k => TestHost.WithAtom(Place(k, 0), 1.5f));
+            uint threads = SurfaceScheduler.Threads;
+            try
+            {
+                SurfaceScheduler.Threads = 100000; // more than a context may have
+                TestHost.Until(() => _hosts[0].Failures.Count > 0, _hosts);
+            }
+            finally
+            {
+                SurfaceScheduler.Threads = threads;
+            }
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            ContextPool pool = SurfaceScheduler.PoolOf(SurfaceBackend.Cpu);
+            ContextSlot slot = pool.LendNow(_hosts[0].Session, null, out _);
+            pool.Release(slot, false);
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(1));
+            Assert.That(pool.LendNow(_hosts[0].Session, null, out _), Is.SameAs(slot));
+            pool.Release(slot, false);
+        }
+
+        [Test]
         public void ManySurfacesAreNotManySquared()
         {
             const int count = 2000;

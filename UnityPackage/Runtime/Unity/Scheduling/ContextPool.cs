@@ -37,7 +37,17 @@ namespace QuickSes
             _backend = backend;
         }
 
-        public int Count => _slots.Count;
+        /// <summary>How many there are or are being made; those that could not be made are none.</summary>
+        public int Count
+        {
+            get
+            {
+                int count = 0;
+                foreach (ContextSlot slot in _slots)
+                    count += slot.HasFailed ? 0 : 1;
+                return count;
+            }
+        }
 
         /// <summary>How many are in use.</summary>
         public int LentCount
@@ -133,7 +143,7 @@ namespace QuickSes
         {
             slot.User = null;
             slot.LastUse = ++_uses;
-            if (!isBroken && _slots.Count <= SurfaceScheduler.MaxContexts)
+            if (!isBroken && Count <= SurfaceScheduler.MaxContexts)
                 return;
             _slots.Remove(slot);
             Retire(slot);
@@ -248,12 +258,11 @@ namespace QuickSes
         {
             isHopeless = false;
             error = default;
-            int usable = 0;
+            int usable = Count;
             bool isOneMade = false;
             ContextSlot failed = null;
             foreach (ContextSlot slot in _slots)
             {
-                usable += slot.HasFailed ? 0 : 1;
                 isOneMade |= !slot.IsReady;
                 failed = slot.HasFailed ? slot : failed;
             }
