@@ -17,9 +17,8 @@ namespace quickses {
 //  - The cost of a level in use is the median of its last three frames, so that one slow frame changes nothing.
 //  - A finer level that was never computed costs at most (ratio of spacings)² of what a coarser one did, or to the
 //    fourth power with the grid method, apart from what all levels share; its mesh has (ratio of spacings)² of the
-//    bytes. Where this is too pessimistic (on a GPU,
-//    coarse levels cost as much as fine ones), the next finer level is tried when the present one leaves half of the
-//    budget unused.
+//    bytes. Where this is too pessimistic (on a GPU, coarse levels cost as much as fine ones), the next finer level is
+//    tried when the present one leaves half of the budget unused.
 //  - Costs of levels not in use follow the one in use: when its frames become cheaper, so do theirs.
 //  - A level that turned out too expensive is left at once, and tried again after 8 frames, then 16, 32, ... 1024.
 //  - To move to a finer level it must fit with room to spare; to stay it must only fit.

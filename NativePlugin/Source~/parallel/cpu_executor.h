@@ -284,11 +284,6 @@ class CpuExecutor : public NothingQueued {
   void fetch_all(T *values, const T *source, size_t n) {
     if (values != source) std::copy(source, source + n, values);
   }
-  // Several values with one wait.
-  template <class T>
-  void fetch_each(const T *const *sources, T *values, size_t n) {
-    for (size_t k = 0; k < n; ++k) values[k] = *sources[k];
-  }
   template <class T>
   void upload(T *destination, const T *host, size_t n) {
     if (n) std::memcpy(destination, host, n * sizeof(T));

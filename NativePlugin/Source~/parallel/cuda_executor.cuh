@@ -191,16 +191,6 @@ class CudaExecutor : public CudaQueue {
     std::memcpy(&value, to_staging(p, sizeof(T)), sizeof(T));
     return value;
   }
-  // Copies several values with one wait. Small ones: they go through the staging buffer.
-  template <class T>
-  void fetch_each(const T *const *sources, T *values, size_t n) {
-    char *host = static_cast<char *>(staging_.reserve(n * sizeof(T)));
-    for (size_t k = 0; k < n; ++k)
-      check_cuda(cudaMemcpyAsync(host + k * sizeof(T), sources[k], sizeof(T), cudaMemcpyDeviceToHost, stream()),
-                 "cudaMemcpyAsync");
-    wait();
-    std::memcpy(values, host, n * sizeof(T));
-  }
   // ---- counts ---------------------------------------------------------------------------------------------------
 
   // A frame begins whose counts may be anticipated (anticipation.h); kind 0: none. is_short: the last one of its kind

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The few verbs every pass is written in. There are two back ends with the same members: CpuExecutor (threads of
-// its own) and CudaExecutor (Thrust/CUB on a stream). Stages are templates over the executor and know neither.
+// its own) and CudaExecutor (CUB on a stream). Stages are templates over the executor and know neither.
 //
 // clang-format off
 //   Span<T> allocate<T>(n)         memory of the back end, uninitialised, valid until the arena is rewound
@@ -13,7 +13,7 @@
 //   sort_by_key(keys, values)      stable, in place
 //   compact(n, keep, out)          the i with keep(i), in order; returns their number. Waits
 //   compact(n, keep, out, count)   the same; their number stays with the back end
-//   fetch(p), fetch_each(sources, values, n)  copies one value, or several, to the host. Waits
+//   fetch(p)                       copies a value to the host. Waits
 //   fetch_all(values, source, n)   copies an array to the host, if it is not there already. Waits
 //   take_counts<T>()               a T of zeros for passes to count in
 //   expect(name, counts, most)     what was counted. Waits; or, if it is told by the frame before, at most so much

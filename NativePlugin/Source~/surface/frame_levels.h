@@ -70,7 +70,7 @@ class FrameLevels {
     double total = 0, begun = 0;
     for (const float h : frame.spacings) total += cost_of(h);
     const auto start = std::chrono::steady_clock::now();
-    qses_report report;
+    qses_report report{};
     Work shared = work_of(frame.in, frame.plan, &report);
     const bool is_beside = frame.is_beside;
     const typename CoarseLanes<Executor>::Scope lanes_scope(lanes_, executor);

@@ -18,7 +18,7 @@ struct NoTimer {
 };
 
 template <class Executor, class Timer>
-class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
+class LadderEngine : public SurfaceEngine {
  public:
   // memory_budget: bytes, 0 for none. threads: for what is left to the CPU.
   template <class... Arguments>
@@ -75,7 +75,7 @@ class LadderEngine : public SurfaceEngine, private BackendContract<Executor> {
     const typename Executor::CallScope scope(executor_);
     walk(in, stop, [&](const MemoryPlan &plan) {
       executor_.open_counts(0);
-      qses_report report;
+      qses_report report{};
       Work work = levels_.work_of(in, plan, &report);
       prepare_frame(work, in);
       if (work.makes_mesh) {

@@ -233,7 +233,7 @@ MeshMemoryView measure_and_cut(Work &work, MeshMemoryView mesh) {
   if (work.settings.measure) note_measures(measures.sums, work.report);
   if (work.settings.atom_areas && !(is_exact(work.settings) && work.parameters.is_of_balls()))
     work.atom_areas = bring_areas(work, [&](double *areas) {
-      measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, true, work.atoms.count, areas);
+      measure_owners(executor, mesh.view, mesh.triangles, work.parameters.spacing, work.atoms.count, areas);
     });
   if (work.is_cut && mesh.vertices > 0) {
     work.timer.begin("visible_mask");

@@ -363,12 +363,6 @@ TEST(CudaExecutor, CopiesAndFills) {
   std::vector<uint32_t> all(in.size());
   executor.fetch_all(all.data(), span.data, all.size());
   EXPECT_EQ(all, in);
-  const uint32_t *const sources[3] = {span.data + 5, span.data + 999, span.data};
-  uint32_t values[3];
-  executor.fetch_each(sources, values, 3);
-  EXPECT_EQ(values[0], in[5]);
-  EXPECT_EQ(values[1], in[999]);
-  EXPECT_EQ(values[2], in[0]);
   executor.fill(Span<uint32_t>{span.data, 500}, 0x11);
   const auto host = to_host(executor, span);
   EXPECT_EQ(host[499], 0x11111111u);

@@ -100,10 +100,6 @@ class SerialExecutor : public quickses::NothingQueued {
     return *counts;
   }
   template <class T>
-  void fetch_each(const T *const *sources, T *values, size_t n) {
-    for (size_t k = 0; k < n; ++k) values[k] = *sources[k];
-  }
-  template <class T>
   void upload(T *destination, const T *host, size_t n) {
     std::copy(host, host + n, destination);
   }

@@ -80,9 +80,9 @@ QSES_FN void end_balls(const BallColumns &c, int at) {
   store_pack(c.radius + at, WidePack(0.f));
 }
 
-QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high, float reach) {
-  const Vec3<float> r(reach, reach, reach);
-  return cells_around(cells, low - r, high + r);
+// In Å, of coordinates in a brick whose first point that is.
+QSES_FN float more_than_rounding(const Vec3<float> &low) {
+  return 1e-3f + 1e-6f * maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
 }
 
 // Gathers what can matter in a cube: atoms whose ball, grown by a reach, meets it.

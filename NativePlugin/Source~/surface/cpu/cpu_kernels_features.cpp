@@ -44,8 +44,7 @@ int gather_neighbors(const NeighborGridView &atoms, uint32_t i, const Columns &c
   const Sphere self = atoms.items[i];
   const Vec3<float> center(self.center);
   const float reach = self.radius + atoms.cells.radii.in_cells;
-  const Vec3<float> r(reach, reach, reach);
-  const CellBox box = cells_around(atoms.cells, center - r, center + r);
+  const CellBox box = cells_within(atoms.cells, center, reach);
   const WidePack x0(center.x), y0(center.y), z0(center.z), r0(self.radius);
   int n = 0;
   for_item_packs(atoms, box, [&](const ItemPack &p) {

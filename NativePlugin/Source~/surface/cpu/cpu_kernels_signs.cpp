@@ -134,9 +134,7 @@ BrickNeeds evaluate_brick_signs(const FeatureView &f, const BrickSet &bricks, ui
   const float h = lattice.spacing, depth = f.parameters.depth;
   const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x, first.y, first.z);
-  // More than rounding.
-  const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
-  const float slack = 1e-3f + 1e-6f * farthest;
+  const float slack = more_than_rounding(low);
   BrickCandidates c = gather_atoms(f, low, 7.f * h, 1.1f * slack, scratch);
   if (c.needs.atoms) return c.needs;
 

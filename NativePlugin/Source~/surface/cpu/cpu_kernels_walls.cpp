@@ -208,8 +208,7 @@ BrickNeeds mark_brick_walls(const FeatureView &f, const BrickSet &bricks, uint32
   const float h = lattice.spacing;
   const glm::ivec3 first = lattice.first_point(bricks.place(brick));
   const Vec3<float> low = lattice.position(first.x - 1, first.y - 1, first.z - 1);
-  const float farthest = maximum(maximum(absolute(low.x), absolute(low.y)), absolute(low.z));
-  const float slack = 1e-3f + 1e-6f * farthest;
+  const float slack = more_than_rounding(low);
   const BrickCandidates c = gather_candidates(f, low, 9.f * h, 1.1f * slack, p.depth + slack, scratch);
   if (c.needs.atoms || c.needs.arcs) return c.needs;
   const WallField field{f, c, slack, p.depth - kRoot3 * h < 0.01f * p.depth};

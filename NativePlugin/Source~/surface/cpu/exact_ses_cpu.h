@@ -77,22 +77,11 @@ inline void emit_vertices(CpuKernelExecutor &executor, const FeatureView &featur
   });
 }
 
-struct EmitBrickTriangles {
-  const CpuKernels *kernels;
-  const BrickSet *bricks;
-  const MeshLayout *layout;
-  const TableView *table;
-  const MeshView *mesh;
-  uint32_t first;
-  void operator()(SoloTeam, NoScratch &, size_t i) const {
-    kernels->emit_brick_triangles(*bricks, *layout, first + static_cast<uint32_t>(i), *table, *mesh);
-  }
-};
-
 inline void emit_triangles(CpuKernelExecutor &executor, const BrickSet &bricks, const MeshLayout &layout,
                            BrickRange slice, const TableView &table, const MeshView &mesh) {
-  executor.for_each_brick<NoScratch>(
-      slice.size(), EmitBrickTriangles{&executor.kernels(), &bricks, &layout, &table, &mesh, slice.first});
+  executor.for_each_brick<NoScratch>(slice.size(), [&](SoloTeam, NoScratch &, size_t i) {
+    executor.kernels().emit_brick_triangles(bricks, layout, slice.first + static_cast<uint32_t>(i), table, mesh);
+  });
 }
 
 }  // namespace quickses

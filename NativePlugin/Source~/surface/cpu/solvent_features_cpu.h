@@ -287,7 +287,7 @@ struct PooledFeatures {
   PooledFeatures(Room &room, size_t atoms, bool with_arc_atoms) {
     const size_t cap_count = atoms * kUsualCapsPerAtom, arc_count = atoms * kUsualArcsPerAtom;
     const size_t arc_bytes = sizeof(Arc) + (with_arc_atoms ? sizeof(ArcAtoms) : 0);
-    room.template allocate<char>(cap_count * sizeof(Cap) + arc_count * arc_bytes + 768);
+    room.template allocate<char>(cap_count * sizeof(Cap) + arc_count * arc_bytes + 3 * kArenaUnit);
     caps = room.template allocate<Cap>(cap_count);
     arcs = room.template allocate<Arc>(arc_count);
     if (with_arc_atoms) arc_atoms = room.template allocate<ArcAtoms>(arc_count);

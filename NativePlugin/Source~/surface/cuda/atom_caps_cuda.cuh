@@ -47,8 +47,7 @@ __device__ __forceinline__ int gather_caps(const NeighborGridView &atoms, uint32
   const Vec3<float> center(self.center);
   const float reach = self.radius + atoms.cells.radii.in_cells;
   const CellLayout &cells = atoms.cells;
-  const CellBox box =
-      cells_around(cells, center - Vec3<float>(reach, reach, reach), center + Vec3<float>(reach, reach, reach));
+  const CellBox box = cells_within(cells, center, reach);
   const float edge = 1.f / cells.inverse_edge;
   // Cells are told apart by rounded arithmetic: coordinates are good to this much.
   const float slack = 1e-3f + 1e-6f * edge * static_cast<float>(cells.count.x + cells.count.y + cells.count.z);

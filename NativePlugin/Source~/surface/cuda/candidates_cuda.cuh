@@ -169,8 +169,8 @@ struct CudaCandidates {
     const uint32_t last = part.last - view.first_brick, room = static_cast<uint32_t>(decider_room.size / kBrickPoints);
     view.decided = {view.first_brick + (last > room ? last - room : 0), part.last};
   }
-  bool list(BrickRange r) const { return part.size() > 0 && part.first == r.first && part.last == r.last; }
-  bool have(BrickRange r) const { return part.size() > 0 && view.first_brick <= r.first && r.last <= part.last; }
+  bool are_of(BrickRange r) const { return part.size() > 0 && part.first == r.first && part.last == r.last; }
+  bool include(BrickRange r) const { return part.size() > 0 && view.first_brick <= r.first && r.last <= part.last; }
   bool have_deciders() const { return view.decided.size() > 0; }
   // Steps of a thread that looks at all atoms and arcs of a row, and at an atom's caps.
   uint64_t look_steps(const FeatureView &features) const { return 64 + 2 * uint64_t(longest_row) + features.most_caps; }

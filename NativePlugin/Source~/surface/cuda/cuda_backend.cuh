@@ -36,7 +36,7 @@ struct Backend<CudaExecutor> {
   template <class E>
   static void evaluate_signs(E &executor, const Slice &s, uint64_t *signs) {
     if (s.slice.size() == 0) return;
-    const bool are_shared = s.candidates.list(s.slice);
+    const bool are_shared = s.candidates.are_of(s.slice);
     if (!are_shared) gpu::gather_candidates(executor, s, signs);
     gpu::evaluate_leaves(executor, s, are_shared && s.features.parameters.has_thin_walls(), signs);
   }

@@ -35,7 +35,7 @@ VertexJob open_vertices(E &executor, const CudaSlice &s, const VertexWork &v) {
   job.first = v.sizes.first_vertex;
   job.count = v.sizes.vertices;
   if (job.count == 0) return job;
-  if (!candidates.have(s.slice)) gather_candidates(executor, s, nullptr);
+  if (!candidates.include(s.slice)) gather_candidates(executor, s, nullptr);
   job.features = features;
   job.bricks = s.bricks;
   job.layout = v.layout;
@@ -121,7 +121,7 @@ void emit_vertices_once_prepared(E &executor, const CudaSlice &s, const VertexWo
   const FeatureView &features = s.features;
   const CudaCandidates &candidates = s.candidates;
   const auto mark = executor.arena().mark();
-  const bool gives_back = candidates.have(s.slice) && candidates.vertex_room.size == 0;
+  const bool gives_back = candidates.include(s.slice) && candidates.vertex_room.size == 0;
   const VertexJob job = open_vertices(executor, s, v);
   prepare(job);
   const uint64_t look = vertex_steps(features, candidates.longest_row);

@@ -169,7 +169,7 @@ void evaluate_leaves(E &executor, const CudaSlice &s, bool deciders, uint64_t *s
   const SignJob job{s.features, s.bricks, CandidateReach::of(s.features.parameters), candidates.view, signs};
   const uint64_t steps = candidates.look_steps(s.features);
   if (candidates.view.row_shift == kRowOfLeaf)
-    executor.launch("evaluate_leaves", evaluate_wide_leaves_kernel, candidates.leaves,
+    executor.launch("evaluate_wide_leaves", evaluate_wide_leaves_kernel, candidates.leaves,
                     LaunchShape{kWideSignThreads, 1, steps}, job);
   else
     executor.launch("evaluate_leaves", evaluate_leaves_kernel, candidates.leaves,

@@ -143,7 +143,7 @@ void mark_thin_walls(E &executor, const CudaSlice &s, const uint64_t *signs, uin
   CudaRooms &rooms = s.rooms;
   const CudaCandidates &candidates = s.candidates;
   const size_t leaves = static_cast<size_t>(s.slice.size()) * kLeavesPerBrick;
-  if (!candidates.have(s.slice)) gather_candidates(executor, s, nullptr);
+  if (!candidates.include(s.slice)) gather_candidates(executor, s, nullptr);
   if (!candidates.have_deciders()) evaluate_leaves(executor, s, true, nullptr);
   const auto mark = executor.arena().mark();
   WallJob job{};

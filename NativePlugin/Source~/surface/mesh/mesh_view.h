@@ -8,6 +8,9 @@
 
 namespace quickses {
 
+// Of a triangle's corner, the next one.
+QSES_FN int next_corner(int k) { return k == 2 ? 0 : k + 1; }
+
 // A run of a mesh's vertices and triangles in memory of the back end. Vertices and triangles are named by their numbers
 // in the whole mesh.
 struct MeshView {

@@ -12,7 +12,7 @@ template <class Work>
 void note_bricks(Work &work, const BrickSet &bricks) {
   work.facts->size = {};
   work.facts->size.bricks = static_cast<double>(bricks.count);
-  work.facts->brick_entries = bricks.table ? work.lattice.table_size() : 0;
+  work.facts->brick_entries = bricks.table_entries();
 }
 
 // How large the mesh is of which these bricks are.
@@ -33,7 +33,7 @@ MeshCounts lay_out_closed_mesh(Work &work, BrickSet *bricks, MeshLayout *layout,
     work.timer.begin("marching_cubes");
     const MeshCounts counts = lay_out_mesh(executor, *bricks, signs.data, work.table.triangle_count, layout);
     if (layout->border_changes == 0) {
-      work.facts->brick_entries = bricks->table ? work.lattice.table_size() : 0;
+      work.facts->brick_entries = bricks->table_entries();
       note_size(work, bricks->count, counts, layout->leaf_total);
       check_mesh_size(counts);
       return counts;

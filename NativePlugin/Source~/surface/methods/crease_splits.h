@@ -82,11 +82,12 @@ struct RoundCounts {
 
 // One round over triangles near creases: the mesh grows by a part. The list becomes that of the next round. Waits once.
 template <class Work, class Sheets>
-void split_round(Work &work, const Sheets &sheets, const SplitRound &round, GrowingMesh *mesh, NearTriangles *list,
-                 size_t *listed, bool is_last) {
+void split_round(Work &work, const Sheets &sheets, SplitRound round, GrowingMesh *mesh, NearTriangles *list,
+                 size_t *listed) {
   auto &executor = work.executor;
   constexpr bool kCounts = std::decay_t<decltype(executor)>::kCounts;
-  const Lattice &lattice = work.lattice;
+  const Lattice &lattice = sheets.lattice;
+  const bool is_last = round == SplitRound::kLast;
   const size_t n = *listed, most_edges = n + n / 2;  // each is an edge of two triangles of the list
   const auto room = [&](auto kind, size_t m) { return mesh_room<decltype(kind)>(work, *mesh, m); };
 
@@ -106,14 +107,14 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
                           room(uint8_t{}, most_edges).data};
   executor.for_each(n, ListEdges{mesh->view, *list, chosen.data, edges});
   Snaps snaps{nullptr, edges};
-  if (round.snap) {
+  if (!is_last) {
     const Span<uint64_t> nearest = room(uint64_t{}, mesh->whole.vertices);
     executor.fill(nearest, 0xff);
     snaps.nearest = nearest.data;
   }
   SolveEdges<Sheets> solve{mesh->view, sheets, round, edges, snaps, false};
   for_each_edge<Sheets>(executor, most_edges, solve);
-  if (round.snap) {
+  if (!is_last) {
     executor.for_each(mesh->whole.triangles, RefuseSnaps{mesh->view, lattice, snaps});
     executor.for_each(most_edges, SnapVertices{mesh->view, lattice, snaps});
     solve.ends_were_moved = true;
@@ -124,14 +125,14 @@ void split_round(Work &work, const Sheets &sheets, const SplitRound &round, Grow
   CreasePoint *const corners = Sheets::kHasCorners ? room(CreasePoint{}, n).data : nullptr;
   constexpr uint64_t kSteps = Sheets::kHasCorners ? kCreaseSteps : kPlainSteps;
   FindSplits find{mesh->view, *list, edges, chosen.data, edges_of.data, corners, 1};
-  for_each_in_two_steps(executor, n, RefuseSplits<Sheets>{find, sheets, lattice}, kSteps);
-  while (++find.pass <= kRefusals) executor.for_each(n, RefuseSplits<Sheets>{find, sheets, lattice}, kSteps);
+  for_each_in_two_steps(executor, n, RefuseSplits<Sheets>{find, sheets}, kSteps);
+  while (++find.pass <= kRefusals) executor.for_each(n, RefuseSplits<Sheets>{find, sheets}, kSteps);
   find.pass = 0;
 
   // Behind the sums the number of old triangles for the next round, so that both come to the host together.
   const Span<uint64_t> counts_of = room(uint64_t{}, n), before = room(uint64_t{}, n + 2);
   const Span<uint32_t> old_near = room(uint32_t{}, is_last ? 0 : mesh->whole.triangles);
-  executor.for_each(n, CountNew<Sheets>{find, sheets, lattice, counts_of.data}, kSteps);
+  executor.for_each(n, CountNew<Sheets>{find, sheets, counts_of.data}, kSteps);
   executor.exclusive_scan(n, LoadCount<uint64_t>{counts_of.data}, Span<uint64_t>{before.data, n + 1});
   if (is_last)
     executor.fill(Span<uint64_t>{before.data + n + 1, 1}, 0);
@@ -176,8 +177,8 @@ GrowingMesh split_at(Work &work, const Sheets &sheets, const MeshMemoryView &pla
   else
     work.facts->found.near = exponent_of_part(static_cast<double>(listed) / static_cast<double>(triangles));
   NearTriangles list{near.data, static_cast<uint32_t>(listed), 0};
-  split_round(work, sheets, SplitRound{true, false}, &mesh, &list, &listed, false);
-  split_round(work, sheets, SplitRound{false, true}, &mesh, &list, &listed, true);
+  split_round(work, sheets, SplitRound::kFirst, &mesh, &list, &listed);
+  split_round(work, sheets, SplitRound::kLast, &mesh, &list, &listed);
   return mesh;
 }
 

@@ -11,9 +11,7 @@ namespace quickses {
 // those before.
 QSES_FN uint32_t nearest_grid_atom(const GridField &f, const Vec3<float> &x, float margin, MetItems met,
                                    uint32_t best) {
-  const float reach = f.atoms.cells.radii.in_cells + margin;
-  const Vec3<float> r(reach, reach, reach);
-  const CellBox box = cells_around(f.atoms.cells, x - r, x + r);
+  const CellBox box = cells_within(f.atoms.cells, x, f.atoms.cells.radii.in_cells + margin);
   float depth = met.first > 0 ? ball_depth(f.atoms.items[best], x) : kNoDepth;
   f.atoms.for_each_run(box, [&](const ItemRun &whole) {
     const ItemRun run = met.cut(whole);

@@ -29,7 +29,7 @@ SurfaceSize count_size(Work &work, WorkFacts *facts) {
   using Executor = std::remove_reference_t<decltype(executor)>;
   const auto mark = executor.arena().mark();
   const auto count = [&](const BrickSet &bricks, const auto &evaluate) {
-    facts->brick_entries = bricks.table ? bricks.lattice.table_size() : 0;
+    facts->brick_entries = bricks.table_entries();
     Span<uint64_t> signs = executor.template allocate<uint64_t>(size_t(bricks.count) * kLeavesPerBrick);
     evaluate(bricks, signs.data);
     MeshLayout layout{};

@@ -72,8 +72,7 @@ struct ClassifyBrick {
     const Vec3<float> low = lattice.position(first.x, first.y, first.z);
     const Vec3<float> high = lattice.position(first.x + 7, first.y + 7, first.z + 7);
     const float reach = balls.radius(atoms.cells.radii.in_cells) + slack(lattice.spacing);
-    const Vec3<float> margin(reach, reach, reach);
-    const CellBox box = cells_around(atoms.cells, low - margin, high + margin);
+    const CellBox box = cells_within(atoms.cells, low, high, reach);
     for (int i = team.rank(); i < kBrickPoints; i += team.size()) scratch.beyond_ball[i] = kFarAway;
     if (team.rank() == 0) scratch.count = 0;
     team.sync();

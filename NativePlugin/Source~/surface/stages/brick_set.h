@@ -32,6 +32,7 @@ struct BrickSet {
   const Tally<uint64_t> *found =
       nullptr;  // where their number is, if there may be fewer: the last ones then stand for none
 
+  uint64_t table_entries() const { return table ? lattice.table_size() : 0; }
   QSES_FN glm::ivec3 place(size_t brick) const { return unpack_place(places[brick]); }
   // A table has fewer entries than 2^32.
   QSES_FN uint32_t place_in_table(const glm::ivec3 &b) const { return static_cast<uint32_t>(lattice.linear(b)); }

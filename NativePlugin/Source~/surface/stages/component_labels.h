@@ -30,7 +30,7 @@ QSES_FN uint32_t find_root(uint32_t *parents, uint32_t v) {
 template <class Visit>
 QSES_FN void for_rising_edges(const uint32_t *corners, const Visit &visit) {
   for (int k = 0; k < 3; ++k) {
-    const uint32_t a = corners[k], b = corners[k == 2 ? 0 : k + 1];
+    const uint32_t a = corners[k], b = corners[next_corner(k)];
     if (a < b) visit(a, b);
   }
 }

@@ -14,11 +14,9 @@ constexpr uint64_t kCreaseSteps = uint64_t(1) << 15;
 // The passes of creases are inlined into their kernels (QSES_FN), since they are large: a function that is called would
 // get them by way of memory, a copy for each thread.
 
-// What a round may do.
-struct SplitRound {
-  bool snap;   // vertices may be moved to a crease that is near
-  bool along;  // edges along creases are split, too, and triangles over corners
-};
+// In the first round vertices may be moved to a crease that is near; in the last one edges along creases are split,
+// too, and triangles over corners.
+enum class SplitRound { kFirst, kLast };
 
 // The triangles that a round looks at: some of those that were there before the last one, and all that this one made.
 struct NearTriangles {
@@ -45,7 +43,7 @@ struct IsMarked {
 };
 
 // An edge belongs to the triangle in which it goes from its smaller to its larger vertex: of a closed mesh that is one.
-QSES_FN bool owns_edge(const uint32_t *t, int k) { return t[k] < t[k == 2 ? 0 : k + 1]; }
+QSES_FN bool owns_edge(const uint32_t *t, int k) { return t[k] < t[next_corner(k)]; }
 
 // An edge is not split too near to an end.
 QSES_FN bool is_split(const CreasePoint &p) {
@@ -86,12 +84,13 @@ struct ChooseEdges {
   QSES_FN void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(list(i));
     uint8_t bits = 0;
-    if (sheets.is_near_crease(mesh, t, round.along)) {
+    const bool along = round == SplitRound::kLast;
+    if (sheets.is_near_crease(mesh, t, along)) {
       bits = kStillNear;
       for (int k = 0; k < 3; ++k) {
         if (!owns_edge(t, k)) continue;
-        const uint32_t u = t[k], v = t[k == 2 ? 0 : k + 1];
-        const bool crest = round.along && mesh.on_crease(u) && mesh.on_crease(v);
+        const uint32_t u = t[k], v = t[next_corner(k)];
+        const bool crest = along && mesh.on_crease(u) && mesh.on_crease(v);
         if (crest || sheets.may_cross(mesh, u, v)) bits |= uint8_t(1u << k);
       }
     }
@@ -115,7 +114,7 @@ struct ListEdges {
     for (int k = 0; k < 3; ++k) {
       if (!(chosen[i] >> k & 1)) continue;
       edges.firsts[e] = t[k];
-      edges.seconds[e] = t[k == 2 ? 0 : k + 1];
+      edges.seconds[e] = t[next_corner(k)];
       edges.nexts[e] = atomic_exchange(edges.heads + t[k], e);
       edges.snap_refused[e] = 0;
       ++e;

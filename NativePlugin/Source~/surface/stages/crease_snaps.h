@@ -50,11 +50,12 @@ struct SolveEdges {
   QSES_FN void operator()(NearBy &near_by, size_t i) const {
     if (i >= edges.count()) return;
     if (ends_were_moved && !snaps.is_moved(edges.firsts[i]) && !snaps.is_moved(edges.seconds[i])) return;
-    const CreasePoint p = sheets.solve(near_by, end_of_vertex(mesh, sheets.lattice, edges.firsts[i]),
-                                       end_of_vertex(mesh, sheets.lattice, edges.seconds[i]), round.along);
+    const CreasePoint p =
+        sheets.solve(near_by, end_of_vertex(mesh, sheets.lattice, edges.firsts[i]),
+                     end_of_vertex(mesh, sheets.lattice, edges.seconds[i]), round == SplitRound::kLast);
     edges.points[i] = p;
     edges.refused[i] = is_split(p) ? 0 : CreaseEdges::kNeverSplit;
-    if (!round.snap || ends_were_moved) return;
+    if (round != SplitRound::kFirst || ends_were_moved) return;
     const int end = end_to_snap(p);
     const uint32_t e = static_cast<uint32_t>(i);
     if (end == 0) atomic_min(snaps.nearest + edges.firsts[e], Snaps::key(p.to_first, e));

@@ -83,7 +83,7 @@ struct EdgeMerges {
     int shortest = 0;
     float least2 = kFarAway;
     for (int k = 0; k < 3; ++k) {
-      const float length2 = length_squared(position(t[k == 2 ? 0 : k + 1]) - position(t[k]));
+      const float length2 = length_squared(position(t[next_corner(k)]) - position(t[k]));
       if (length2 < least2) least2 = length2, shortest = k;
     }
     return shortest;
@@ -130,7 +130,7 @@ struct ChooseSlots {
     const uint32_t slot = 2 * static_cast<uint32_t>(i), *const t = merges.mesh.triangle(merges.poor[i]);
     const int k = merges.shortest_edge(t);
     atomic_min(merges.slots + t[k], slot);
-    atomic_min(merges.slots + t[k == 2 ? 0 : k + 1], slot + 1);
+    atomic_min(merges.slots + t[next_corner(k)], slot + 1);
   }
 };
 
@@ -176,7 +176,7 @@ struct MergedEdge {
     const uint32_t *const t = m.mesh.triangle(m.poor[i]);
     if (m.is_gone(t)) return;
     const int k = m.shortest_edge(t);
-    ends[0] = t[k], ends[1] = t[k == 2 ? 0 : k + 1];
+    ends[0] = t[k], ends[1] = t[next_corner(k)];
     if (!m.is_known(ends[0]) || !m.is_known(ends[1])) return;
     const float longest = kLongestMerge * m.lattice.spacing;
     if (length_squared(m.position(ends[1]) - m.position(ends[0])) > longest * longest) return;

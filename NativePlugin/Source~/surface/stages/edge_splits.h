@@ -27,7 +27,7 @@ QSES_FN Pieces cut_triangle(bool on0, bool on1, bool on2, bool within, const Pos
   };
   if (within) {
     for (int k = 0; k < 3; ++k) {
-      const int next = k == 2 ? 0 : k + 1;
+      const int next = next_corner(k);
       if (on[k]) {
         add(k, 3 + k, 6);
         add(3 + k, next, 6);
@@ -116,7 +116,7 @@ struct FindSplits {
     for (int k = 0; k < 3; ++k) {
       uint32_t e = kNoNumber;
       if (!owns_edge(t, k))
-        e = edges.find(t[k], t[k == 2 ? 0 : k + 1]);
+        e = edges.find(t[k], t[next_corner(k)]);
       else if (chosen[i] >> k & 1)
         e = own++;
       edges_of[3 * i + static_cast<size_t>(k)] = e;
@@ -126,7 +126,7 @@ struct FindSplits {
 
 // A triangle over a place where three creases meet gets a vertex there: one that has points on all three of them.
 template <class Sheets>
-QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lattice &lattice, size_t i) {
+QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, size_t i) {
   find.leave_out_corner(i);
   if (!(find.chosen[i] & kStillNear)) return;
   const uint32_t *const t = find.mesh.triangle(find.list(i));
@@ -164,7 +164,7 @@ QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lat
   Vec3<float> place[kPoints], ends[3];
   count = 0;
   for (int k = 0; k < kPoints; ++k) {
-    if (k < 3) ends[k] = lattice.from_caller(find.mesh.position(t[k]));
+    if (k < 3) ends[k] = sheets.lattice.from_caller(find.mesh.position(t[k]));
     if (pairs[k] == kNoPair) continue;
     place[count] = k < 3 ? ends[k] : find.edges.points[s.edge[k - 3]].position;
     pair[count][0] = static_cast<uint32_t>(pairs[k] >> 32);
@@ -198,12 +198,11 @@ QSES_FN void find_corner(const FindSplits &find, const Sheets &sheets, const Lat
 
 // Would a piece of the triangle be folded, or flat?
 template <class Sheets>
-QSES_FN bool spoils(const FindSplits &find, const Sheets &sheets, const Lattice &lattice, size_t i,
-                    const TriangleSplits &s) {
+QSES_FN bool spoils(const FindSplits &find, const Sheets &sheets, size_t i, const TriangleSplits &s) {
   const uint32_t *const t = find.mesh.triangle(find.list(i));
   CreaseEnd corner[7];
   for (int k = 0; k < 3; ++k) {
-    corner[k] = end_of_vertex(find.mesh, lattice, t[k]);
+    corner[k] = end_of_vertex(find.mesh, sheets.lattice, t[k]);
     if (s.edge[k] != kNoNumber) corner[3 + k] = end_of_point(find.edges.points[s.edge[k]]);
   }
   if (s.within) corner[6] = end_of_point(find.corners[i]);
@@ -227,11 +226,10 @@ template <class Sheets>
 struct RefuseSplits {
   FindSplits find;
   Sheets sheets;
-  Lattice lattice;
   QSES_FN bool is_done_at_a_glance(size_t i) const {
     if (find.pass == 1) find.find_edges(i);
     if (find.pass > 1 && !find.had_refusal(i, find.pass - 1)) return true;
-    if constexpr (Sheets::kHasCorners) find_corner(find, sheets, lattice, i);
+    if constexpr (Sheets::kHasCorners) find_corner(find, sheets, i);
     const TriangleSplits s = find(i);
     return s.edges() == 0 && !s.within;
   }
@@ -240,7 +238,7 @@ struct RefuseSplits {
   }
   QSES_FN void finish(size_t i) const {
     TriangleSplits s = find(i);
-    while (spoils(find, sheets, lattice, i, s)) {
+    while (spoils(find, sheets, i, s)) {
       if (!s.within) {
         for (int k = 0; k < 3; ++k)
           if (s.edge[k] != kNoNumber) atomic_store(find.edges.refused + s.edge[k], find.pass);
@@ -257,14 +255,13 @@ template <class Sheets>
 struct CountNew {
   FindSplits find;
   Sheets sheets;
-  Lattice lattice;
   uint64_t *counts;  // [list]
   QSES_FN void operator()(size_t i) const {
     if constexpr (Sheets::kHasCorners)
       if (find.had_refusal(i, kRefusals)) {
-        find_corner(find, sheets, lattice, i);
+        find_corner(find, sheets, i);
         const TriangleSplits left = find(i);
-        if (left.within && spoils(find, sheets, lattice, i, left)) find.leave_out_corner(i);
+        if (left.within && spoils(find, sheets, i, left)) find.leave_out_corner(i);
       }
     const TriangleSplits s = find(i);
     uint64_t vertices = s.within ? 1 : 0;

@@ -52,8 +52,7 @@ struct GaussianDensity {
 
   // Where atoms can be that add to the density in a box.
   QSES_FN CellBox cells_near(const Vec3<float> &low, const Vec3<float> &high) const {
-    const Vec3<float> reach(max_radius, max_radius, max_radius);
-    return cells_around(atoms.cells, low - reach, high + reach);
+    return cells_within(atoms.cells, low, high, max_radius);
   }
   // Calls visit(atom, number) for them, always in the same order.
   template <class Visit>

@@ -9,8 +9,6 @@
 #include "surface/stages/projection.h"
 #include "surface/stages/side_normals.h"
 
-#include <type_traits>
-
 namespace quickses {
 
 // Where vertices start before they are projected.
@@ -47,8 +45,8 @@ struct VertexWork {
   const MeshView &mesh;
 };
 
-// What a back end must offer, as static functions; BackendContract lets the compiler check it. Where E stands, they
-// also take a CountingExecutor of theirs, and then only ask for memory.
+// What a back end must offer, as static functions. Where E stands, they also take a CountingExecutor of theirs, and
+// then only ask for memory.
 //
 //   Candidates, LearntRooms, and Slice, which is SliceWork of both
 //   find_solvent_features(E, atoms, parameters, plan, rooms, features)
@@ -79,40 +77,5 @@ template <class Executor>
 using Candidates = typename Backend<Executor>::Candidates;
 template <class Executor>
 using LearntRooms = typename Backend<Executor>::LearntRooms;
-
-struct NoSlices {
-  template <class WorkOn>
-  void operator()(const WorkOn &) const {}
-};
-
-template <class Executor>
-struct BackendContract {
-  using B = Backend<Executor>;
-  template <class Function, class... Arguments>
-  static constexpr bool has = std::is_invocable_r<void, Function, Executor &, Arguments...>::value;
-  static_assert(has<decltype(&B::template find_solvent_features<Executor>), const NeighborGridView &,
-                    const SurfaceParameters &, const MemoryPlan &, typename B::LearntRooms &, SolventFeatures *>,
-                "find_solvent_features");
-  using Slice = SliceWork<typename B::LearntRooms, typename B::Candidates>;
-  static_assert(has<decltype(&B::template gather_candidates<Executor>), const Slice &, uint64_t *>,
-                "gather_candidates");
-  static_assert(has<decltype(&B::template evaluate_signs<Executor>), const Slice &, uint64_t *>, "evaluate_signs");
-  static_assert(has<decltype(&B::template mark_thin_walls<Executor>), const Slice &, const uint64_t *, uint64_t *>,
-                "mark_thin_walls");
-  static_assert(has<decltype(&B::template emit_vertices<Executor>), const Slice &, const VertexWork &>,
-                "emit_vertices");
-  static_assert(has<decltype(&B::template emit_triangles<Executor>), const BrickSet &, const MeshLayout &, BrickRange,
-                    const TableView &, const MeshView &>,
-                "emit_triangles");
-  static_assert(has<decltype(&B::template emit_mesh<Executor, void (*)(), void (*)()>), const Slice &,
-                    const VertexWork &, const TableView &, void (*)(), void (*)()>,
-                "emit_mesh");
-  static_assert(has<decltype(&B::template evaluate_density<Executor, NoSlices>), const GaussianDensity &,
-                    const BrickSet &, const NoSlices &, uint64_t *>,
-                "evaluate_density");
-  static_assert(has<decltype(&B::template emit_density_vertices<Executor>), const GaussianDensity &, const BrickSet &,
-                    const MeshLayout &, const MeshView &>,
-                "emit_density_vertices");
-};
 
 }  // namespace quickses

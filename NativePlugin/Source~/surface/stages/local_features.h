@@ -23,10 +23,7 @@ struct LocalReach {
         far(f.parameters.depth + around + 1e-2f) {
     arc_reach = far + f.max_arc_bound;
   }
-  QSES_FN CellBox box(const NeighborGridView &grid, float reach) const {
-    const Vec3<float> r(reach, reach, reach);
-    return cells_around(grid.cells, x - r, x + r);
-  }
+  QSES_FN CellBox box(const NeighborGridView &grid, float reach) const { return cells_within(grid.cells, x, reach); }
   // May the arc in such a ball be near?
   template <class Ball, class T>
   QSES_FN auto meets(const Ball &bound, const Vec3<T> &at) const -> decltype(at.x <= at.x) {

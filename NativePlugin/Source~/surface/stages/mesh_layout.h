@@ -177,10 +177,7 @@ SliceSizes slice_sizes(Executor &executor, const BrickSet &bricks, const MeshLay
   if (slice.size() == bricks.count)
     return {0, static_cast<uint32_t>(layout.vertex_total), 0, static_cast<uint32_t>(layout.triangle_total),
             0, static_cast<uint32_t>(layout.leaf_total)};
-  const BrickTotals *const ends[2] = {layout.base + slice.first, layout.base + slice.last};
-  BrickTotals n[2];
-  executor.fetch_each(ends, n, 2);
-  return sizes_between(n[0], n[1]);
+  return sizes_between(executor.fetch(layout.base + slice.first), executor.fetch(layout.base + slice.last));
 }
 // The mean; but a few bricks may be three times as full.
 template <class Executor>

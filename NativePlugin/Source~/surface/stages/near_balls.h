@@ -11,11 +11,9 @@ namespace quickses {
 template <class Use>
 QSES_FN bool for_balls_near(const FeatureView &f, const Vec3<float> &a, const Vec3<float> &b, float reach,
                             uint32_t most_met, const Use &use) {
-  const float far = f.atoms.cells.radii.in_cells + reach;
-  const Vec3<float> around(far, far, far);
   const Vec3<float> low(minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)),
       high(maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z));
-  const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
+  const CellBox box = cells_within(f.atoms.cells, low, high, f.atoms.cells.radii.in_cells + reach);
   uint32_t met = 0;
   return f.atoms.for_each_run(box, [&](const ItemRun &run) {
     met += run.end - run.begin;

@@ -81,6 +81,14 @@ QSES_FN CellBox cells_around(const CellLayout &cells, const Vec3<float> &low, co
       cells.cell_along(low.y, cells.origin.y, cells.count.y), cells.cell_along(high.y, cells.origin.y, cells.count.y),
       cells.cell_along(low.z, cells.origin.z, cells.count.z), cells.cell_along(high.z, cells.origin.z, cells.count.z)};
 }
+// Of a box that is so much wider on every side; and around a point.
+QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &low, const Vec3<float> &high, float reach) {
+  const Vec3<float> r(reach, reach, reach);
+  return cells_around(cells, low - r, high + r);
+}
+QSES_FN CellBox cells_within(const CellLayout &cells, const Vec3<float> &x, float reach) {
+  return cells_within(cells, x, x, reach);
+}
 
 // The grid as kernels see it.
 struct NeighborGridView {
@@ -177,7 +185,6 @@ struct CollectNumbers {
 };
 
 constexpr size_t kBehindItems = 8;  // kernels load whole packs
-QSES_FN Sphere behind_items() { return {glm::vec3(kFarAway), 0.f}; }
 
 // Puts them in order, and leaves what kernels may load behind the last item. For kBehindItems or all items, whichever
 // are more. bring(place, i): what else is to be in that order.
@@ -196,7 +203,7 @@ struct RankItems {
   uint32_t *order;
   Bring bring;
   QSES_HOST_DEVICE void operator()(size_t place) const {
-    if (place < kBehindItems) sorted[count + place] = behind_items();
+    if (place < kBehindItems) sorted[count + place] = removed_atom();
     if (place >= count) return;
     if (place >= starts[cells] + large) {  // no item
       sorted[place] = items[place];
@@ -250,7 +257,7 @@ struct ArrangeItems {
       if (!is_no_item(sorted[i])) bring(i, order[i]);
     }
     if (i < chunks) find_starts(i);
-    if (i < kBehindItems) sorted[count + i] = behind_items();
+    if (i < kBehindItems) sorted[count + i] = removed_atom();
   }
 };
 

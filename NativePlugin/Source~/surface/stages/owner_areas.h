@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Area of a mesh that belongs to each atom: a third of every triangle to each of its corners' owners.
+// Area of a mesh that belongs to each atom: a third of every triangle, bent along
+// the normals of its vertices, to each of its corners' owners.
 #pragma once
 
 #include "parallel/atomics.h"
@@ -10,12 +11,11 @@ namespace quickses {
 // Sums as integers, so that they do not depend on the order.
 struct AddOwnerAreas {
   MeshView mesh;
-  bool bent;  // along the normals of the vertices
   double units;
   int64_t *sums;  // per atom, multiples of 1 / units
   QSES_HOST_DEVICE void operator()(size_t i) const {
     const uint32_t *const t = mesh.triangle(i);
-    const double third = measure_triangle(mesh, i, {0.0, 0.0, 0.0}, bent).area / 3.0;
+    const double third = measure_triangle(mesh, i, {0.0, 0.0, 0.0}, true).area / 3.0;
     const int64_t share = static_cast<int64_t>(floor(rounded_product(third, units) + 0.5));
     const uint32_t a = mesh.owner(t[0]), b = mesh.owner(t[1]), c = mesh.owner(t[2]);
     if (a == b && b == c) {
@@ -39,7 +39,7 @@ struct StoreOwnerAreas {
 
 // areas: of all atoms, in the back end's memory. spacing: triangles are about that large.
 template <class Executor>
-void measure_owners(Executor &executor, const MeshView &mesh, size_t triangles, float spacing, bool bent, size_t atoms,
+void measure_owners(Executor &executor, const MeshView &mesh, size_t triangles, float spacing, size_t atoms,
                     double *areas) {
   const auto mark = executor.arena().mark();
   const Span<int64_t> sums = executor.template allocate_zeros<int64_t>(atoms);
@@ -47,7 +47,7 @@ void measure_owners(Executor &executor, const MeshView &mesh, size_t triangles, 
   int bits = 58;
   for (size_t k = triangles; k > 0; k >>= 1) --bits;
   const double h = static_cast<double>(spacing), units = std::ldexp(1.0, bits) / (h * h);
-  executor.for_each(triangles, AddOwnerAreas{mesh, bent, units, sums.data});
+  executor.for_each(triangles, AddOwnerAreas{mesh, units, sums.data});
   executor.for_each(atoms, StoreOwnerAreas{sums.data, 1.0 / units, areas});
   executor.arena().rewind(mark);
 }

@@ -72,10 +72,8 @@ struct FindContainedAtoms {
   QSES_HOST_DEVICE void operator()(size_t thread) const {
     const auto [i, rank] = thread_of_item(thread, threads);
     const Sphere self = atoms.items[i];
-    const Vec3<float> c(self.center);
     const float reach = maximum(0.f, containing_reach(self.radius, atoms.cells.radii.in_cells));
-    const Vec3<float> r(reach, reach, reach);
-    const CellBox box = cells_around(atoms.cells, c - r, c + r);
+    const CellBox box = cells_within(atoms.cells, Vec3<float>(self.center), reach);
     MetItems met = part;
     const bool is_free = atoms.for_each_run(box, [&, i = i, rank = rank](const ItemRun &whole) {
       const ItemRun run = met.cut(whole);

@@ -297,7 +297,7 @@ struct FindSecondOwners {
     const uint32_t owners[3] = {mesh.owner(t[0]), mesh.owner(t[1]), mesh.owner(t[2])};
     if (owners[0] == owners[1] && owners[0] == owners[2]) return;
     for (int k = 0; k < 3; ++k)
-      for (const int other : {k == 2 ? 0 : k + 1, k == 0 ? 2 : k - 1})
+      for (const int other : {next_corner(k), k == 0 ? 2 : k - 1})
         if (owners[other] != owners[k] &&
             sheets.is_on(sheets.sphere_of(owners[other]), sheets.lattice.from_caller(mesh.position(t[k]))))
           atomic_min(mesh.second_owners + t[k], owners[other]);

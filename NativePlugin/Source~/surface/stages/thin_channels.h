@@ -98,9 +98,7 @@ struct BrickBalls {
                     float reach) {
     if (team.rank() == 0) met = count = 0;
     team.sync();
-    const float far = f.atoms.cells.radii.in_cells + reach;
-    const Vec3<float> around(far, far, far);
-    const CellBox box = cells_around(f.atoms.cells, low - around, high + around);
+    const CellBox box = cells_within(f.atoms.cells, low, high, f.atoms.cells.radii.in_cells + reach);
     const int rows = f.atoms.runs(box);
     const int share = team.size() % 8 == 0 ? 8 : 1, own = team.rank() % share;  // so many take turns in a row
     for (int row = team.rank() / share; row < rows; row += team.size() / share) {
