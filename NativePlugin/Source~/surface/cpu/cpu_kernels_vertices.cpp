@@ -344,15 +344,9 @@ void write_vertices(const FeatureView &f, const Lattice &lattice, const VertexSt
                     uint32_t base, int n, const Work &w) {
   uint32_t unplaced = 0;
   for (int v = 0; v < n; ++v) {
-    SurfacePoint s = w.point(v);
+    const SurfacePoint s = w.point(v);
     unplaced += s.placed ? 0 : 1;
-    const uint32_t owner = static_cast<uint32_t>(w.owner[v]), vertex = base + static_cast<uint32_t>(v);
-    const glm::vec3 p = lattice.to_caller(s.position);
-    store_vec3(mesh.position(vertex), Vec3<float>(p));
-    settle_normals(f, owner, &s);
-    store_normals(mesh, vertex, s.normal, s.second_normal);
-    mesh.owner(vertex) = f.atoms.order[owner];
-    if (mesh.patches) mesh.patch(vertex) = w.patch[v];
+    write_vertex(f, lattice, mesh, base + static_cast<uint32_t>(v), static_cast<uint32_t>(w.owner[v]), s);
   }
   if (unplaced > 0) atomic_add(starts.unplaced, unplaced);
 }

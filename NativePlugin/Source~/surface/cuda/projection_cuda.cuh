@@ -16,16 +16,9 @@ constexpr int kVertexThreads = 128;
 // Nearly all starts are nearer to the surface than this, in units of the spacing.
 constexpr float kUsualStart = 0.5f;
 
-__device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, SurfacePoint s, uint32_t owner) {
-  const FeatureView &f = job.features;
-  const uint32_t vertex = job.first + k;
+__device__ __forceinline__ void finish_vertex(const VertexJob &job, uint32_t k, const SurfacePoint &s, uint32_t owner) {
   if (!s.placed) atomic_add(job.starts.unplaced, 1u);
-  settle_normals(f, owner, &s);
-  const glm::vec3 position = job.bricks.lattice.to_caller(s.position);
-  store_vec3(job.mesh.position(vertex), Vec3<float>(position));
-  store_normals(job.mesh, vertex, s.normal, s.second_normal);
-  job.mesh.owner(vertex) = f.atoms.order[owner];
-  if (job.mesh.patches) job.mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
+  write_vertex(job.features, job.bricks.lattice, job.mesh, job.first + k, owner, s);
 }
 
 // A vertex that is left to the kernels behind: the mesh holds where it is on its way, on the sphere of one probe, and

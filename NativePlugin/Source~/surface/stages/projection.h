@@ -7,6 +7,7 @@
 #include "quickses/quickses.h"
 
 #include "surface/geometry/lattice.h"
+#include "surface/stages/side_normals.h"
 #include "surface/stages/solvent_features.h"
 
 namespace quickses {
@@ -202,11 +203,16 @@ QSES_FN uint32_t nearest_atom(const FeatureView &f, const Candidates &candidates
   return deepest_atom(f, candidates, x).atom;
 }
 
-// On the SAS and VDW surfaces vertices may sit on creases, where the line to y has no length, and a vertex that was not
-// placed has no such line: the normal is that of the owner's sphere.
-QSES_FN void settle_normals(const FeatureView &f, uint32_t owner, SurfacePoint *s) {
-  if (f.parameters.depth > 0.f && s->placed) return;
-  s->normal = s->second_normal = sphere_normal(load(f.atoms.items + owner), s->position);
+// A vertex as the mesh has it. On the SAS and VDW surfaces it may sit on a crease, where the line to y has no length,
+// and one that was not placed has no such line: the normal is that of the owner's sphere.
+QSES_FN void write_vertex(const FeatureView &f, const Lattice &lattice, const MeshView &mesh, uint32_t vertex,
+                          uint32_t owner, SurfacePoint s) {
+  if (f.parameters.is_of_balls() || !s.placed)
+    s.normal = s.second_normal = sphere_normal(load(f.atoms.items + owner), s.position);
+  store_vec3(mesh.position(vertex), Vec3<float>(lattice.to_caller(s.position)));
+  store_normals(mesh, vertex, s.normal, s.second_normal);
+  mesh.owner(vertex) = f.atoms.order[owner];
+  if (mesh.patches) mesh.patch(vertex) = static_cast<uint8_t>(s.patch);
 }
 
 // ---- the rounds of a projection --------------------------------------------------------------------------------
