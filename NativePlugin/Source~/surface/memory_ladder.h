@@ -145,20 +145,7 @@ class LadderEngine : public SurfaceEngine {
       } catch (const AnticipatedTooLittle &) {  // the same again: who anticipated too little waits for all counts now
         levels_.forget_frames_of_lanes();       // which may rest on that
       } catch (const MemoryRefused &refused) {
-        const bool had_lanes = levels_.drop_lanes(), lacked_room = facts_.found.lacked_room;
-        note_splits();
-        if (is_beside_)
-          note_loneliness();  // the same again, one level after the other
-        else if (had_lanes)
-          history_.unsettle();  // the same again, with what they had
-        else if (executor_.has_anticipated())
-          note_tightness();  // the same again, without the room for more than there is
-        else if (lacked_room)
-          ;  // the same again, with as much behind the mesh as splits of creases need
-        else if (!has_dropped && (has_dropped = memory_.drop_kept_outside(executor_)))
-          ;  // the same again, without what a crowded frame before it has left
-        else if (!refused.again())
-          step = next_step(in, step);
+        if (!will_do_better(refused, &has_dropped)) step = next_step(in, step);
         if (step < kMemoryPlanCount) continue;
         // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
         if (is_for_device(in.settings.delivery)) forget();
@@ -166,6 +153,31 @@ class LadderEngine : public SurfaceEngine {
         throw;
       }
     }
+  }
+
+  // Whether something was changed, or learnt, that makes the plan that was refused worth another attempt. has_dropped:
+  // what was kept outside of the arena.
+  bool will_do_better(const MemoryRefused &refused, bool *has_dropped) {
+    const bool had_lanes = levels_.drop_lanes(), lacked_room = facts_.found.lacked_room;
+    note_splits();
+    if (is_beside_) {
+      note_loneliness();  // one level after the other
+      return true;
+    }
+    if (had_lanes) {
+      history_.unsettle();  // with what they had
+      return true;
+    }
+    if (executor_.has_anticipated()) {
+      note_tightness();  // without the room for more than there is
+      return true;
+    }
+    if (lacked_room) return true;  // with as much behind the mesh as splits of creases need
+    if (!*has_dropped && memory_.drop_kept_outside(executor_)) {
+      *has_dropped = true;  // without what a crowded frame before it has left
+      return true;
+    }
+    return refused.again();
   }
 
   // Whether a frame may go on with what was counted in the one before: where there is room for more than is needed, and

@@ -211,6 +211,12 @@ GrowingMesh split_creases(Work &work, const MeshMemoryView &plain, size_t vertex
                   triangle_room);
 }
 
+struct PlaceAtoms {
+  const uint32_t *order;
+  uint32_t *places;
+  QSES_HOST_DEVICE void operator()(size_t i) const { places[order[i]] = static_cast<uint32_t>(i); }
+};
+
 template <class Work>
 MeshMemoryView build_creased_surface(Work &work) {
   Work plain = work;

@@ -27,7 +27,8 @@ struct UntoldSize {
   uint64_t most_bricks = 0;
 };
 
-// What prepare_frame (pipeline.h) makes for all levels of a frame.
+// What prepare_frame (pipeline.h) makes for all levels of a frame. Each level has a copy, which enters it, and asks for
+// another mesh where that is split at creases (crease_splits.h).
 struct PreparedFrame {
   SurfaceParameters parameters{};
   Lattice lattice{};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The balls that may come near a place, one after the other.
+// The balls that may come near a place, one after the other, or those that do.
 #pragma once
 
-#include "surface/stages/solvent_features.h"
+#include "surface/stages/projection.h"
 
 namespace quickses {
 
@@ -20,6 +20,28 @@ QSES_FN bool for_balls_near(const FeatureView &f, const Vec3<float> &a, const Ve
     if (met > most_met) return false;
     for (uint32_t k = run.begin; k < run.end; ++k)
       if (!use(k, load(f.atoms.items + k))) return false;
+    return true;
+  });
+}
+
+// The balls near a lattice point. Where more than so many atoms are met or near, nothing is done.
+struct NearBalls {
+  static constexpr int kMost = 48;
+  static constexpr uint32_t kMostMet = 2048;
+  uint32_t place[kMost];
+  int count = 0;
+  float depth = -kFarAway;  // of the point, in the deepest
+};
+
+// Of what for_each(use) goes through, the balls within `reach` of a point; false if they are too many.
+template <class ForEach>
+QSES_FN bool find_near_balls(const ForEach &for_each, const Vec3<float> &x, float reach, NearBalls *near) {
+  return for_each([&](uint32_t place, const Sphere &ball) {
+    const float longest = ball.radius + reach;
+    if (length_squared(x - Vec3<float>(ball.center)) > longest * longest) return true;
+    if (near->count == NearBalls::kMost) return false;
+    near->depth = maximum(near->depth, ball_depth(ball, x));
+    near->place[near->count++] = place;
     return true;
   });
 }

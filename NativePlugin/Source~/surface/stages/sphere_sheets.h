@@ -315,10 +315,4 @@ struct MarkCircleVertices {
   }
 };
 
-struct PlaceAtoms {
-  const uint32_t *order;
-  uint32_t *places;
-  QSES_HOST_DEVICE void operator()(size_t i) const { places[order[i]] = static_cast<uint32_t>(i); }
-};
-
 }  // namespace quickses

@@ -7,34 +7,11 @@
 #include "parallel/atomics.h"
 #include "surface/stages/marching_cubes.h"
 #include "surface/stages/near_balls.h"
-#include "surface/stages/projection.h"
 
 namespace quickses {
 
 // A narrower gap, in spacings, is none.
 constexpr float kLeastGap = 0.02f;
-
-// The balls near a lattice point. Where more than so many atoms are met or near, nothing is done.
-struct NearBalls {
-  static constexpr int kMost = 48;
-  static constexpr uint32_t kMostMet = 2048;
-  uint32_t place[kMost];
-  int count = 0;
-  float depth = -kFarAway;  // of the point, in the deepest
-};
-
-// Of what for_each(use) goes through, the balls within `reach` of a point; false if they are too many.
-template <class ForEach>
-QSES_FN bool find_near_balls(const ForEach &for_each, const Vec3<float> &x, float reach, NearBalls *near) {
-  return for_each([&](uint32_t place, const Sphere &ball) {
-    const float longest = ball.radius + reach;
-    if (length_squared(x - Vec3<float>(ball.center)) > longest * longest) return true;
-    if (near->count == NearBalls::kMost) return false;
-    near->depth = maximum(near->depth, ball_depth(ball, x));
-    near->place[near->count++] = place;
-    return true;
-  });
-}
 
 // Where the line a + t way is in a ball: from t = entry to exit. False if it passes by.
 QSES_FN bool meet_ball(const Sphere &ball, const Vec3<float> &a, const Vec3<float> &way, float *entry, float *exit) {
