@@ -29,13 +29,17 @@ bool LevelChooser::Subject::operator==(const Subject &other) const {
          gaussian_radius_scale == other.gaussian_radius_scale && gaussian_isovalue == other.gaussian_isovalue;
 }
 
-void LevelChooser::Level::add(double cost_ms, double shared_ms) {
+void LevelChooser::Level::add(const Frame &newest) {
   std::move(recent + 1, recent + 3, recent);
-  recent[2] = cost_ms;
+  recent[2] = newest;
   ++frames;
-  const double a = recent[0], b = recent[1], c = recent[2];
-  cost = frames == 1 ? c : frames == 2 ? std::min(b, c) : std::max(std::min(a, b), std::min(std::max(a, b), c));
-  shared = std::max(0.0, std::min(shared_ms, cost));
+  const uint32_t used = std::min(frames, 3u);
+  Frame sorted[3];
+  std::partial_sort_copy(recent + 3 - used, recent + 3, sorted, sorted + used,
+                         [](const Frame &x, const Frame &y) { return x.cost < y.cost; });
+  const Frame &usual = sorted[(used - 1) / 2];
+  cost = usual.cost;
+  shared = usual.shared;
 }
 
 double LevelChooser::expected_cost(uint32_t level) const {
@@ -48,8 +52,6 @@ double LevelChooser::expected_cost(uint32_t level) const {
            show_cost(levels_[from].bytes) * std::pow(ratio, kGrowthOfMesh);
   };
   for (uint32_t k = level; k-- > 0;)
-    if (levels_[k].known()) return scaled(k);
-  for (uint32_t k = level + 1; k < subject_.ladder.count; ++k)
     if (levels_[k].known()) return scaled(k);
   return std::numeric_limits<double>::infinity();
 }
@@ -86,7 +88,7 @@ void LevelChooser::record(double cost_ms, double shared_ms, double bytes) {
   Level &level = levels_[current_];
   const double before = level.cost, bytes_before = level.bytes;
   const bool settled = level.frames >= 3;
-  level.add(cost_ms, shared_ms);
+  level.add({cost_ms, shared_ms});
   level.bytes = bytes;
   if (settled && before > 0)
     for (Level &other : levels_)

@@ -14,7 +14,8 @@ namespace quickses {
 // The rules:
 //  - A cost is that of computing and that of showing: the latter by the bytes of the mesh, which the caller names.
 //  - The first frame is the coarsest level; then the finest one that is expected to fit.
-//  - The cost of a level in use is the median of its last three frames, so that one slow frame changes nothing.
+//  - The cost of a level in use is that of the one in the middle of its last three frames, so that one slow frame
+//    changes nothing; so is what all levels share of it.
 //  - A finer level that was never computed costs at most (ratio of spacings)² of what a coarser one did, or to the
 //    fourth power with the grid method, apart from what all levels share; its mesh has (ratio of spacings)² of the
 //    bytes. Where this is too pessimistic (on a GPU, coarse levels cost as much as fine ones), the next finer level is
@@ -48,8 +49,11 @@ class LevelChooser {
   void record_failure();
 
  private:
+  struct Frame {
+    double cost = 0, shared = 0;
+  };
   struct Level {
-    double recent[3] = {};  // of this stay at the level, newest last
+    Frame recent[3];        // of this stay at the level, newest last
     uint32_t frames = 0;    // of this stay
     double cost = -1;       // what it is expected to cost to compute; negative: unknown
     double shared = 0;      // of that
@@ -58,7 +62,7 @@ class LevelChooser {
     uint32_t wait = 0;      // frames until it may be tried again
 
     bool known() const { return cost >= 0; }
-    void add(double cost_ms, double shared_ms);
+    void add(const Frame &newest);
   };
 
   double show_cost(double bytes) const { return show_ms_per_mb_ * 1e-6 * bytes; }

@@ -63,6 +63,32 @@ TEST(LevelChooser, StartsWithTheCoarsestThenTakesTheFinestThatFits) {
   }
 }
 
+// What all levels share does not grow, the rest does as the method's work.
+TEST(LevelChooser, FinerLevelsAreExpectedToCostWhatTheLawSays) {
+  const auto two = subject({2.f, 1.f});
+  const auto second_level = [&](qses_method method, double budget, const Cost &coarse) {
+    auto s = two;
+    s.method = method;
+    LevelChooser chooser;
+    return run(chooser, s, budget, 2, [&](uint32_t, int) { return coarse; }).back();
+  };
+  EXPECT_EQ(second_level(QSES_METHOD_EXACT, 20.5, {10, 8}), 1u);  // 8 + 4 * 2, with a fifth of the budget to spare
+  EXPECT_EQ(second_level(QSES_METHOD_EXACT, 19.5, {10, 8}), 0u);
+  EXPECT_EQ(second_level(QSES_METHOD_EXACT, 5.5, {1, 0}), 1u);
+  EXPECT_EQ(second_level(QSES_METHOD_GRID, 5.5, {1, 0}), 0u);
+  EXPECT_EQ(second_level(QSES_METHOD_GRID, 20.5, {1, 0}), 1u);
+}
+
+// No room to spare is needed to stay.
+TEST(LevelChooser, AFinerLevelNeedsRoomToSpare) {
+  const auto s = subject({1.f, 0.8f});
+  const auto costs = costs_of(s, 0, 1);  // 1, 1.5625
+  LevelChooser chooser;
+  EXPECT_EQ(run(chooser, s, 1.7, 100, costs), std::vector<uint32_t>(100, 0));
+  EXPECT_EQ(run(chooser, s, 1.99, 1, costs).back(), 1u);
+  EXPECT_EQ(run(chooser, s, 1.7, 100, costs), std::vector<uint32_t>(100, 1));
+}
+
 TEST(LevelChooser, TheBudgetIsExceededInTriesOnly) {
   const auto s = subject();
   const auto cost = costs_of(s, 0, 1);  // 0.25, 1, 4, 16
@@ -100,6 +126,23 @@ TEST(LevelChooser, ALevelThatIsTooExpensiveIsTriedLessAndLess) {
     if (later[k] == 1) longest = std::max(longest, k - last), last = k;
   EXPECT_LE(std::max(longest, later.size() - last), 1100u);
   for (size_t k = 2; k < tries.size(); ++k) EXPECT_GE(tries[k] - tries[k - 1], tries[k - 1] - tries[k - 2]);
+}
+
+// While it waits it is come back to only where there is far more room.
+TEST(LevelChooser, ALevelThatWasTooExpensiveIsComeBackToEarlyWithMuchRoom) {
+  const auto s = subject({1.f, 0.5f});
+  const auto levels_after_the_failure = [&](double later) {
+    LevelChooser chooser;
+    const auto levels = run(chooser, s, 10, 14, [&](uint32_t level, int frame) {
+      const double factor = frame < 6 ? 1 : later;
+      return Cost{factor * (level == 0 ? 4 : 12), 0};
+    });
+    EXPECT_EQ(levels[2], 1u);  // tried
+    return std::vector<uint32_t>(levels.begin() + 3, levels.end());
+  };
+  // Two frames tell that all has become cheaper: 7.2 ms, which would be room enough for another level, or 4.8 ms.
+  EXPECT_EQ(levels_after_the_failure(0.6), (std::vector<uint32_t>{0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(levels_after_the_failure(0.4), (std::vector<uint32_t>{0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}));
 }
 
 // Failures are forgotten when a level has fitted for long: after the next one it is tried again soon.
@@ -150,6 +193,28 @@ TEST(LevelChooser, OneSlowFrameChangesNothing) {
   EXPECT_EQ(levels.back(), 2u);
 }
 
+TEST(LevelChooser, ASlowSecondFrameChangesNothing) {
+  const auto s = subject({2.f, 1.f});
+  LevelChooser chooser;
+  const auto levels = run(chooser, s, 10, 6, [](uint32_t level, int frame) {
+    return Cost{frame == 2 ? 50. : level == 0 ? 1.5 : 6., 0};
+  });
+  EXPECT_EQ(levels, (std::vector<uint32_t>{0, 1, 1, 1, 1, 1}));
+}
+
+// Also if it was what all levels share that took long.
+TEST(LevelChooser, OneFrameThatIsPreparedSlowlyChangesNothing) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto usual = costs_of(s, 1, 5);  // 6, 21
+  const auto levels = run(chooser, s, 10, 60, [&](uint32_t level, int frame) {
+    const Cost c = usual(level, frame);
+    const double more = frame % 10 == 5 ? 50 : 0;
+    return Cost{c.whole + more, c.shared + more};
+  });
+  EXPECT_EQ(levels, std::vector<uint32_t>(60, 0));
+}
+
 TEST(LevelChooser, NoiseDoesNotMakeItOscillate) {
   const auto s = subject();
   const auto usual = costs_of(s, 1, 1);
@@ -178,6 +243,54 @@ TEST(LevelChooser, FollowsCostsDownAndUp) {
   EXPECT_EQ(levels[99], 2u);
   for (size_t k = 105; k < 200; ++k) EXPECT_LE(levels[k], 1u);
   for (size_t k = 230; k < 300; ++k) EXPECT_EQ(levels[k], 2u);
+}
+
+TEST(LevelChooser, GoesOverLevelsAtOnceWhereCostsFall) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto usual = costs_of(s, 1, 1);
+  const auto levels = run(chooser, s, 7, 20, [&](uint32_t level, int frame) {
+    const double factor = frame < 10 ? 50 : 1;
+    return Cost{usual(level, frame).whole * factor, usual(level, frame).shared * factor};
+  });
+  EXPECT_EQ(changes(levels), 1);
+  EXPECT_EQ(levels.back(), 2u);
+}
+
+// What a level not in use shares with others becomes cheaper, too: else finer ones would seem to cost nothing.
+TEST(LevelChooser, WhatIsSharedFollowsCosts) {
+  const auto s = subject({2.f, 1.f, 0.5f});
+  LevelChooser chooser;
+  const auto usual = costs_of(s, 8, 8);  // 10, 16, 40
+  ASSERT_EQ(run(chooser, s, 20, 10, usual).back(), 1u);
+  ASSERT_EQ(run(chooser, s, 12, 10, usual).back(), 0u);
+  const auto levels = run(chooser, s, 12, 10, [&](uint32_t level, int frame) {
+    return Cost{usual(level, frame).whole / 4, usual(level, frame).shared / 4};
+  });
+  EXPECT_EQ(*std::find_if(levels.begin(), levels.end(), [](uint32_t level) { return level > 0; }), 1u);
+}
+
+// A cost that rises, but still fits, is taken for what it is.
+TEST(LevelChooser, ALevelThatStillFitsIsKept) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto levels = run(chooser, s, 9, 40, [](uint32_t level, int frame) {
+    return Cost{(level == 0 ? 1.3 : 5.2) * (frame < 20 ? 1 : 1.6), 0};
+  });
+  EXPECT_EQ(changes(levels, 1), 0);
+  EXPECT_EQ(levels.back(), 1u);
+}
+
+// The first frames of a stay at a level say what it costs, not that others have changed.
+TEST(LevelChooser, ALevelThatHasBecomeCheaperMeanwhileSaysNothingAboutOthers) {
+  const auto s = subject({2.f, 1.f, 0.5f});
+  LevelChooser chooser;
+  const auto costs = [](double finest) {
+    return [finest](uint32_t level, int) { return Cost{level == 0 ? 2. : level == 1 ? 4. : finest, 0}; };
+  };
+  ASSERT_EQ(run(chooser, s, 10, 10, costs(12)).back(), 1u);
+  ASSERT_EQ(run(chooser, s, 15.5, 2, costs(7)).back(), 2u);
+  EXPECT_EQ(run(chooser, s, 3, 1, costs(7)).back(), 0u) << "level 1 still costs 4";
 }
 
 TEST(LevelChooser, ForgetsWhenTheSubjectChanges) {
@@ -231,6 +344,27 @@ TEST(LevelChooser, AFailedFrameOfTheCoarsestLevelSaysNothingAboutOthers) {
     EXPECT_EQ(level, 0u);
 }
 
+TEST(LevelChooser, AFailedFrameOfALevelInUseSaysNothingAboutOthers) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  const auto costs = [](uint32_t level, int) { return Cost{level == 0 ? 6. : 24., 0}; };
+  ASSERT_EQ(run(chooser, s, 31, 5, costs).back(), 1u);
+  ASSERT_EQ(run(chooser, s, 10, 5, costs).back(), 0u);
+  EXPECT_EQ(chooser.choose(s, 10), 0u);
+  chooser.record_failure();
+  EXPECT_EQ(run(chooser, s, 10, 100, costs), std::vector<uint32_t>(100, 0));
+}
+
+// Where meshes have no bytes, too.
+TEST(LevelChooser, ALevelThatFitsAgainIsComeBackToAtOnce) {
+  const auto s = subject({1.f, 0.8f});
+  const auto costs = costs_of(s, 0, 1);  // 1, 1.5625
+  LevelChooser chooser;
+  ASSERT_EQ(run(chooser, s, 2, 10, costs).back(), 1u);
+  ASSERT_EQ(run(chooser, s, 1.2, 10, costs).back(), 0u);
+  EXPECT_EQ(run(chooser, s, 1.98, 1, costs).back(), 1u);
+}
+
 TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
   const auto s = subject();
   LevelChooser chooser;
@@ -243,6 +377,9 @@ TEST(LevelChooser, ABudgetThatGrowsIsUsed) {
   LevelChooser often_too_dear;
   ASSERT_EQ(run(often_too_dear, two, 10, 500, costs).back(), 0u);
   EXPECT_EQ(run(often_too_dear, two, 16, 1, costs).back(), 1u);
+  ASSERT_EQ(run(often_too_dear, two, 10, 500, costs).back(), 0u);
+  const auto other = run(often_too_dear, two, 11, 20, costs);  // too dear again, for the first time
+  EXPECT_EQ(std::count(other.begin(), other.end(), 1u), 2);
 }
 
 // ---- what it costs to show a mesh
@@ -284,9 +421,34 @@ TEST(LevelChooser, ShowingIsForeseen) {
   const auto s = subject();
   // The law is exact here and no level leaves half of the budget unused: none is tried that can't be shown in time.
   LevelChooser chooser;
-  for (uint32_t level : run_and_show(
-           chooser, s, 9.5, [](int) { return 1.0; }, 1000))
-    EXPECT_LE(level, 2u);
+  const auto levels = run_and_show(
+      chooser, s, 9.5, [](int) { return 1.0; }, 1000);
+  for (uint32_t level : levels) EXPECT_LE(level, 2u);
+  EXPECT_EQ(levels[1], 1u) << "the next one takes 5 ms to compute and 4 to show, which leaves no room to spare";
+}
+
+TEST(LevelChooser, ALevelThatTakesLongToShowIsTriedLessAndLess) {
+  const auto s = subject({1.f, 0.5f});
+  LevelChooser chooser;
+  int tries = 0;
+  for (int frame = 0; frame < 4000; ++frame) {
+    const uint32_t level = chooser.choose(s, 10, 1);
+    chooser.record(1, 0, level == 0 ? 3e6 : 11e6);
+    tries += level == 1 ? 1 : 0;
+  }
+  EXPECT_GE(tries, 3);
+  EXPECT_LE(tries, 14);
+}
+
+// Those of levels that are not in use grow with those of the one that is.
+TEST(LevelChooser, LargerMeshesOfFinerLevelsAreForeseen) {
+  const auto s = subject();
+  LevelChooser chooser;
+  const auto rate = [](int) { return 4.0; };
+  ASSERT_EQ(run_and_show(chooser, s, 40, rate, 20, 0.2 * kBytesAtOneAngstrom).back(), 3u);  // 17 and 12.8 ms
+  ASSERT_EQ(run_and_show(chooser, s, 25, rate, 9, 0.2 * kBytesAtOneAngstrom).back(), 2u);
+  ASSERT_EQ(run_and_show(chooser, s, 25, rate, 20).back(), 2u);  // 5 and 16 ms; the finest takes 17 and 64
+  EXPECT_EQ(run_and_show(chooser, s, 40, rate, 50), std::vector<uint32_t>(50, 2));
 }
 
 TEST(LevelChooser, FollowsWhatShowingTurnsOutToCost) {
