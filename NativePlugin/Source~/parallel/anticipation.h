@@ -103,7 +103,7 @@ class Anticipation {
   // counted: where the counts are whose places were given. Throws AnticipatedTooLittle.
   void verify(const unsigned char *counted) {
     bool enough = true;
-    const auto end = relied_on_.begin() + static_cast<std::ptrdiff_t>(std::min(counting_, relied_on_.size()));
+    const auto end = relied_on_.begin() + static_cast<std::ptrdiff_t>(counting_);
     for (auto relied = relied_on_.begin(); relied != end; ++relied) {
       const Reliance &r = *relied;
       enough &= r.is_covered(counted + r.place, r.expected.bytes);
@@ -115,7 +115,6 @@ class Anticipation {
     counting_ = 0;
     was_enough_ = enough;
     if (enough) return;
-    relied_on_.clear();
     // Counts that come after one that was not enough mean nothing. Frames that are unlike each other rather wait.
     pages_.clear();
     too_little_ = std::min(too_little_ + 1, 6u);

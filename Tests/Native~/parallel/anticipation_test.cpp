@@ -38,6 +38,7 @@ TEST(Anticipation, ExpectsWhatWasCountedAndSomeMore) {
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GT(expected.count, 1600u);
   EXPECT_LT(expected.count, 2 * 1600u);
+  EXPECT_GT(Bricks::anticipated({3}, kPlenty).count, 3u) << "also of few";
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, Bricks{1610}, &expected));
   EXPECT_EQ(expected.count, 1610u) << "no more than there is room for";
@@ -68,6 +69,7 @@ TEST(Anticipation, FollowsWhatIsFound) {
     ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
     a.note_counting();
     ASSERT_NO_THROW(a.verify(Counted(found).bytes));
+    EXPECT_FALSE(a.relies_on_something());
     a.open(7);
     ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
     EXPECT_EQ(expected.count, Bricks::anticipated(Bricks{found}, kPlenty).count);
@@ -75,31 +77,68 @@ TEST(Anticipation, FollowsWhatIsFound) {
 }
 
 TEST(Anticipation, NoticesTooLittleAndForgets) {
+  for (const bool is_first : {true, false}) {
+    Anticipation a;
+    Bricks bricks{}, vertices{};
+    a.open(7);
+    a.note("bricks", Bricks{1600});
+    a.note("vertices", Bricks{10});
+    a.open(7);
+    ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &bricks));
+    ASSERT_TRUE(a.anticipate("vertices", Anticipation::kMostBytes, kPlenty, &vertices));
+    a.note_counting();
+    const Counted found = is_first ? Counted(bricks.count + 1, 10) : Counted(1600, vertices.count + 1);
+    EXPECT_THROW(a.verify(found.bytes), AnticipatedTooLittle);
+    EXPECT_FALSE(a.knows_frames());
+    a.open(7);
+    EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &bricks));
+    EXPECT_FALSE(a.anticipate("vertices", 0, kPlenty, &vertices));
+  }
+}
+
+TEST(Anticipation, AFrameThatWasGivenUpLeavesNothingBehind) {
   Anticipation a;
   Bricks expected{};
   a.open(7);
   a.note("bricks", Bricks{1600});
-  a.note("vertices", Bricks{10});
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
-  ASSERT_TRUE(a.anticipate("vertices", Anticipation::kMostBytes, kPlenty, &expected));
+  a.turn_to(2, 3);
+  a.open(7);
+  EXPECT_FALSE(a.relies_on_something());
+  ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected)) << "of what levels share";
   a.note_counting();
-  EXPECT_THROW(a.verify(Counted(1600, expected.count + 1).bytes), AnticipatedTooLittle);
+  a.open(7);
+  ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+  EXPECT_TRUE(a.relies_on_something());
+  EXPECT_NO_THROW(a.verify(Counted(expected.count + 1).bytes)) << "nothing is being counted yet";
+}
+
+TEST(Anticipation, ForgetsFramesWhenTold) {
+  Anticipation a;
+  Bricks expected{};
+  a.open(7);
+  EXPECT_FALSE(a.knows_frames());
+  a.note("bricks", Bricks{1600});
+  EXPECT_TRUE(a.knows_frames());
+  a.forget_frames();
+  EXPECT_FALSE(a.knows_frames());
   a.open(7);
   EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
-  EXPECT_FALSE(a.anticipate("vertices", 0, kPlenty, &expected));
 }
 
 TEST(Anticipation, WaitsLongerForFramesThatAreUnlikeEachOther) {
   Anticipation a;
   Bricks expected{};
-  int failures = 0, frames = 0;
-  for (; frames < 200; ++frames) {
+  int failures = 0, frames = 0, waiting = 0;
+  for (; frames < 2000; ++frames) {
     a.open(7);
     if (!a.anticipate("bricks", 0, kPlenty, &expected)) {
       a.note("bricks", Bricks{100});
+      ASSERT_LT(++waiting, 100) << "it is never given up";
       continue;
     }
+    waiting = 0;
     a.note_counting();
     EXPECT_THROW(a.verify(Counted(5000).bytes), AnticipatedTooLittle);
     ++failures;
@@ -134,6 +173,18 @@ TEST(Anticipation, IsOfOnePage) {
   a.turn_to(1);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   EXPECT_GE(expected.count, 1600u);
+  // What is found goes to the page that it was anticipated of.
+  a.turn_to(2);
+  ASSERT_TRUE(a.anticipate("bricks", Anticipation::kMostBytes, kPlenty, &expected));
+  a.turn_to(3);
+  a.note_counting();
+  ASSERT_NO_THROW(a.verify(Counted(1500, 150).bytes));
+  a.open(7);
+  for (const auto &[level, found] : {std::pair(1.f, 1500u), std::pair(2.f, 150u)}) {
+    a.turn_to(level);
+    ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+    EXPECT_EQ(expected.count, Bricks::anticipated({found}, kPlenty).count);
+  }
 }
 
 // Counts below a threshold are told as 0, so 0 must leave room up to the threshold.
@@ -150,13 +201,15 @@ TEST(Anticipation, OfCountsThatAreToldFromSoManyOn) {
 TEST(Anticipation, ForgetsPagesOfLongAgo) {
   Anticipation a;
   a.open(1);
-  for (int level = 1; level <= 3000; ++level)
+  Bricks expected{};
+  for (int level = 1; level <= 3000; ++level) {
     for (const int noted : {0, level}) {  // what levels share, too
       a.turn_to(static_cast<float>(noted));
       a.note("bricks", Bricks{100});
     }
-  a.open(1);
-  Bricks expected{};
+    a.open(1);
+    ASSERT_TRUE(a.foresee("bricks", kPlenty, &expected)) << level;
+  }
   const auto is_known = [&](int level) {
     a.turn_to(static_cast<float>(level));
     return a.foresee("bricks", kPlenty, &expected);
@@ -210,6 +263,20 @@ TEST(Anticipation, WaitsForWhatIsCountedAside) {
   EXPECT_THROW(a.verify(Counted(aside.count + 1).bytes), AnticipatedTooLittle);
 }
 
+TEST(Anticipation, WhatIsNoLongerCountedAsideIsLookedAt) {
+  Anticipation a;
+  Bricks expected{};
+  a.open(7);
+  a.note("bricks", Bricks{1600});
+  a.open(7);
+  a.turn_aside(true);
+  a.turn_aside(false);
+  ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
+  a.note_counting();
+  EXPECT_FALSE(a.relies_on_something());
+  EXPECT_THROW(a.verify(Counted(expected.count + 1).bytes), AnticipatedTooLittle);
+}
+
 TEST(Anticipation, ForgivesWhatWasLongAgo) {
   Anticipation a;
   Bricks expected{};
@@ -254,6 +321,26 @@ TEST(Anticipation, FramesThatFailLateAreMadeAnewSeldom) {
   EXPECT_LE(failed, 8);
 }
 
+TEST(Anticipation, FramesThatAreGivenUpForgiveNothing) {
+  Anticipation a;
+  Bricks expected{};
+  const auto go_to_one_that_anticipates = [&] {
+    int waiting = 0;
+    for (a.open(7); !a.anticipate("bricks", 0, kPlenty, &expected); a.open(7), ++waiting) a.note("bricks", Bricks{100});
+    a.note_counting();
+    return waiting;
+  };
+  for (int k = 0; k < 8; ++k) {
+    go_to_one_that_anticipates();
+    EXPECT_THROW(a.verify(Counted(5000).bytes), AnticipatedTooLittle);
+  }
+  const int waiting = go_to_one_that_anticipates();
+  EXPECT_NO_THROW(a.verify(Counted(100).bytes));
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(go_to_one_that_anticipates(), 0);
+  EXPECT_THROW(a.verify(Counted(5000).bytes), AnticipatedTooLittle);
+  EXPECT_GT(go_to_one_that_anticipates(), waiting / 2);
+}
+
 // What is counted later than the counts were sent is looked at the next time.
 TEST(Anticipation, VerifiesWhatWasBeingCounted) {
   Anticipation a;
@@ -264,6 +351,7 @@ TEST(Anticipation, VerifiesWhatWasBeingCounted) {
   a.open(7);
   ASSERT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected));
   a.note_counting();
+  EXPECT_FALSE(a.relies_on_something());
   ASSERT_TRUE(a.anticipate("left", Anticipation::kMostBytes, kPlenty, &expected));
   EXPECT_NO_THROW(a.verify(Counted(1600, 99999).bytes));
   EXPECT_TRUE(a.relies_on_something());
@@ -273,8 +361,15 @@ TEST(Anticipation, VerifiesWhatWasBeingCounted) {
 
 TEST(Anticipation, WithoutAKindDoesNothing) {
   Anticipation a;
+  Bricks expected{};
+  a.open(7);
+  a.note("bricks", Bricks{1600});
+  a.open(7);
   a.open(0);
   EXPECT_FALSE(a.is_open());
+  EXPECT_FALSE(a.anticipate("bricks", 0, kPlenty, &expected));
+  a.open(7);
+  EXPECT_TRUE(a.anticipate("bricks", 0, kPlenty, &expected)) << "frames between others change nothing";
 }
 
 }  // namespace
