@@ -20,7 +20,6 @@ SurfaceJob::~SurfaceJob() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     quit_ = true;
-    waiting_ = {};
     stop_now_ = true;
   }
   changed_.notify_all();
@@ -191,21 +190,18 @@ void SurfaceJob::give_back() {
 
 void SurfaceJob::finished(FinishedMesh mesh) {
   MeshHold let_go;  // so that none waits for it when this one is collected
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    let_go = std::move(let_go_);
-    ready_.is_there = true;
-    std::swap(ready_.mesh, mesh);
-    ready_.atom_count = atom_count_;
-    mesh_bytes_ = static_cast<double>(ready_.mesh.report.mesh_bytes);
-    for (qses_mesh *view : {&ready_.mesh.on_host, &ready_.mesh.on_device.mesh}) {
-      view->level = first_level_ + levels_finished_;
-      view->level_count = ladder_count_;
-    }
-    state_.levels_finished = ++levels_finished_;
-    if (superseded_) stop_now_ = true;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  let_go = std::move(let_go_);
+  ready_.is_there = true;
+  std::swap(ready_.mesh, mesh);
+  ready_.atom_count = atom_count_;
+  mesh_bytes_ = static_cast<double>(ready_.mesh.report.mesh_bytes);
+  for (qses_mesh *view : {&ready_.mesh.on_host, &ready_.mesh.on_device.mesh}) {
+    view->level = first_level_ + levels_finished_;
+    view->level_count = ladder_count_;
   }
-  changed_.notify_all();
+  state_.levels_finished = ++levels_finished_;
+  if (superseded_) stop_now_ = true;
 }
 
 void SurfaceJob::advance(double fraction) { fraction_.store(static_cast<float>(fraction), std::memory_order_relaxed); }

@@ -30,13 +30,13 @@ std::map<long, int> nice_of_threads() {
 }
 
 // Threads that are nicer than the calling one, after a job and a computation. How nice that is stays.
-size_t nicer_threads(bool background) {
+size_t nicer_threads(bool background, uint32_t threads) {
   const long self = syscall(SYS_gettid);
   const int before = nice_of_threads()[self];
   qses_context_options options;
   qses_context_options_init(&options);
   options.backend = QSES_BACKEND_CPU;
-  options.threads = 2;
+  options.threads = threads;
   options.background = background ? 1 : 0;
   qses_context *context = nullptr;
   expect_ok(qses_context_create(&options, &context));
@@ -57,8 +57,9 @@ size_t nicer_threads(bool background) {
 
 TEST(Background, OnlyWhereItIsAskedForAndNotForTheCaller) {
   if (getpriority(PRIO_PROCESS, 0) > 0) GTEST_SKIP() << "this process stands back already";
-  EXPECT_EQ(nicer_threads(false), 0u);
-  EXPECT_GE(nicer_threads(true), 1u);  // the job's, and its helpers as far as they came to work
+  EXPECT_EQ(nicer_threads(false, 2), 0u);
+  EXPECT_EQ(nicer_threads(true, 1), 1u);  // the job's
+  EXPECT_GE(nicer_threads(true, 2), 1u);  // and its helpers as far as they came to work
 }
 
 #endif

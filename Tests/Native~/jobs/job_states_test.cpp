@@ -11,10 +11,11 @@ using namespace jobs_fixture;
 
 namespace {
 
-// Holds a job when its first level is finished, and the job with another tag when it first tells how far it is. Lives
-// longer than the context.
+// Holds a job when so many of its levels are finished, and the job with another tag when it first tells how far it is.
+// Lives longer than the context.
 class TwoGates {
  public:
+  explicit TwoGates(uint32_t levels) : levels_(levels) {}
   void place_in(qses_context *context) {
     context_ = context;
     expect_ok(qses_set_progress_callback(context, stop_at, this));
@@ -28,17 +29,18 @@ class TwoGates {
   static void stop_at(void *gates, double) {
     TwoGates &self = *static_cast<TwoGates *>(gates);
     const qses_progress p = poll(self.context_);
-    if (p.tag == 1 && p.levels_finished == 0) return;
+    if (p.tag == 1 && p.levels_finished < self.levels_) return;
     self.reached_ = p.tag;
     while (self.open_ < p.tag) std::this_thread::yield();
   }
+  const uint32_t levels_;
   qses_context *context_ = nullptr;
   std::atomic<uint32_t> reached_{0}, open_{0};
 };
 
 // Of a job that another one follows, no more levels are made when one is there to be shown.
 TEST(JobStates, ALevelUnderWayIsGivenUpForTheNextJob) {
-  TwoGates gates;
+  TwoGates gates(1);
   const Context context;
   set_atoms(context, block(20));
   gates.place_in(context);
@@ -55,6 +57,26 @@ TEST(JobStates, ALevelUnderWayIsGivenUpForTheNextJob) {
   wait_for_all(context);
   expect_ok(qses_collect(context, &m));
   EXPECT_EQ(m.tag, 2u);
+}
+
+// Else frames that come faster than levels would leave nothing to be shown.
+TEST(JobStates, AJobThatIsFollowedMakesItsCoarsestLevelAndNoOther) {
+  TwoGates gates(0);
+  const Context context;
+  set_atoms(context, block(10));
+  gates.place_in(context);
+  begin(context, settings(0.5), 1);
+  gates.wait_until_reached(1);
+  begin(context, settings(0.5), 2);
+  gates.open(1);
+  gates.wait_until_reached(2);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  EXPECT_EQ(qses_collect(context, &m), QSES_OK);
+  EXPECT_EQ(m.tag, 1u);
+  EXPECT_EQ(m.level, 0u);
+  gates.open(2);
+  wait_for_all(context);
 }
 
 // What is wrong with its arguments is said while a job runs.
@@ -103,6 +125,24 @@ TEST(JobStates, AComputeThatNeverHasItsTurnWasRequested) {
   }
   other.join();
   EXPECT_EQ(poll(context).tag_requested, 2u);
+}
+
+TEST(JobStates, AComputeThatIsCancelledBeforeItsTurnComputesNothing) {
+  Gate gate;
+  const Context context;
+  begin_held(gate, context, block(10), settings(0.5), 1);
+  qses_status status = QSES_OK;
+  std::thread other([&] {
+    qses_settings s = settings(0.5);
+    s.tag = 2;
+    status = qses_compute(context, &s, nullptr);
+  });
+  while (poll(context).tag_requested != 2) std::this_thread::yield();  // it waits then
+  expect_ok(qses_cancel(context));
+  gate.open();
+  other.join();
+  EXPECT_EQ(status, QSES_CANCELLED);
+  EXPECT_EQ(poll(context).tag, 1u);
 }
 
 // Whatever is computed, a job that is finished is all done.
@@ -161,6 +201,57 @@ TEST(JobStates, ALevelThatFailsIsLeftForTheNextFrame) {
     EXPECT_EQ(m.level, 0u);
   }
   EXPECT_EQ(failed, (std::vector<bool>{false, true, false, false, false, false}));
+}
+
+// A computation without a budget says nothing to those with one, and takes none of their levels.
+TEST(JobStates, FramesWithinABudgetAndOthersAreApart) {
+  const Context context(2, 16 << 20);
+  set_atoms(context, crambin());
+  qses_settings s = settings(1.0);
+  s.level_count = 1;
+  s.levels[0] = 2.f;
+  const auto level_of_frame = [&] {
+    s.frame_budget_ms = 60000;
+    begin(context, s);
+    wait_for_all(context);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    return m.level;
+  };
+  EXPECT_EQ(level_of_frame(), 0u);
+  EXPECT_EQ(level_of_frame(), 1u);
+  s.frame_budget_ms = 0;
+  begin(context, s);
+  wait_for_all(context);
+  EXPECT_EQ(poll(context).levels_finished, 2u);
+  qses_mesh m;
+  qses_mesh_init(&m);
+  expect_ok(qses_collect(context, &m));
+  EXPECT_EQ(m.level, 1u);
+  EXPECT_EQ(m.spacing, 1.f);
+  const qses_settings too_fine = settings(0.05);
+  EXPECT_EQ(qses_compute(context, &too_fine, nullptr), QSES_OUT_OF_MEMORY);
+  EXPECT_EQ(level_of_frame(), 1u);
+}
+
+// Nothing that takes a minute to be shown fits, however fast it is made.
+TEST(JobStates, ShowingCountsInABudget) {
+  const Context context;
+  set_atoms(context, cluster(300, 3));
+  qses_settings s = settings(0.25);
+  s.frame_budget_ms = 60000;
+  s.show_ms_per_mb = 60000;
+  const Surface finest = compute(context, cluster(300, 3), s);
+  ASSERT_GT(finest.report.mesh_bytes, 1000000u);
+  for (int frame = 0; frame < 3; ++frame) {
+    begin(context, s);
+    wait_for_all(context);
+    qses_mesh m;
+    qses_mesh_init(&m);
+    expect_ok(qses_collect(context, &m));
+    EXPECT_LT(m.level, 2u);
+  }
 }
 
 }  // namespace
