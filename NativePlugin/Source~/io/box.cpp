@@ -45,10 +45,8 @@ std::optional<Box> box_from_edges(double a, double b, double c, double alpha, do
   const double cos_alpha = cosine(alpha), cos_beta = cosine(beta), cos_gamma = cosine(gamma);
   const double sin_gamma = std::sqrt(1 - cos_gamma * cos_gamma);
   const double y = (cos_alpha - cos_beta * cos_gamma) / sin_gamma;
-  const double z_squared = 1 - cos_beta * cos_beta - y * y;
-  if (!(z_squared > 0)) return std::nullopt;
-  return box_from_vectors(
-      {{{a, 0, 0}, {b * cos_gamma, b * sin_gamma, 0}, {c * cos_beta, c * y, c * std::sqrt(z_squared)}}});
+  const double z = std::sqrt(1 - cos_beta * cos_beta - y * y);  // no number: the angles span nothing
+  return box_from_vectors({{{a, 0, 0}, {b * cos_gamma, b * sin_gamma, 0}, {c * cos_beta, c * y, c * z}}});
 }
 
 Lattice::Lattice(const Box &box) : vectors_(box.vectors) {

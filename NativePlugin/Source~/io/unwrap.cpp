@@ -171,7 +171,6 @@ class BondFinder {
 
 Unwrapper::Unwrapper(const uint8_t *elements, const float *positions, size_t atom_count, const Box &box)
     : molecule_count_(atom_count) {
-  if (atom_count == 0) return;
   std::vector<Bond> bonds = BondFinder(elements, positions, atom_count, box).run();
   bond_count_ = bonds.size();
 
