@@ -66,6 +66,28 @@ TEST(AlternateLocations, OfAtomsThatShareNoLabelAreChosenApart) {
   EXPECT_EQ(taken(text, "D"), (X{1, 4, 5}));
 }
 
+// What shares no label by itself does so by another atom.
+TEST(AlternateLocations, OfAtomsThatAreJoinedByOthersAreChosenTogether) {
+  const std::string text = pdb_atom(" CA ", 'A', "SER", 'A', 1, 1) + pdb_atom(" CA ", 'B', "SER", 'A', 1, 2) +
+                           pdb_atom(" OG ", 'C', "SER", 'A', 1, 3) + pdb_atom(" OG ", 'D', "SER", 'A', 1, 4) +
+                           pdb_atom(" CB ", 'B', "SER", 'A', 1, 5) + pdb_atom(" CB ", 'C', "SER", 'A', 1, 6);
+  EXPECT_EQ(taken(text, "first"), X{1});
+  EXPECT_EQ(taken(text, "D"), X{4});
+}
+
+// More atoms at a location don't make it likelier.
+TEST(AlternateLocations, TheHighestIsThatOfTheGreatestMean) {
+  const std::string text = pdb_atom(" CA ", 'A', "SER", 'A', 1, 1, 0.4) + pdb_atom(" CB ", 'A', "SER", 'A', 1, 2, 0.4) +
+                           pdb_atom(" CA ", 'B', "SER", 'A', 1, 3, 0.6);
+  EXPECT_EQ(taken(text, "highest"), X{3});
+}
+
+TEST(AlternateLocations, OfResiduesWithInsertionCodesAreChosenApart) {
+  std::string inserted = pdb_atom(" CA ", 'B', "ALA", 'A', 1, 2);
+  inserted[26] = 'A';  // residue 1A
+  EXPECT_EQ(taken(pdb_atom(" CA ", 'A', "ALA", 'A', 1, 1) + inserted, "first"), (X{1, 2}));
+}
+
 // An ion or water, of which no atom has the name of the other's.
 TEST(AlternateLocations, OfTwoResiduesAtOnePlaceAreAlternatives) {
   const std::string text = pdb_atom("ZN  ", 'A', " ZN", 'A', 1, 1, 0.4) + pdb_atom(" O  ", 'B', "HOH", 'A', 1, 2, 0.6);
@@ -78,7 +100,9 @@ TEST(AlternateLocations, ALabelThatNoResidueHasIsToldWithThoseThereAre) {
   const std::vector<std::string> warnings = parse(locations(), "D").warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_HAS(warnings[0], "no residue has the alternate location 'D'; there are A, B, C");
-  ASSERT_EQ(parse(pdb_atom(" N  ", ' ', "ALA", 'A', 1, 1), "B").warnings.size(), 1u);
+  const std::vector<std::string> of_none = parse(pdb_atom(" N  ", ' ', "ALA", 'A', 1, 1), "B").warnings;
+  ASSERT_EQ(of_none.size(), 1u);
+  EXPECT_HAS(of_none[0], "'B'; there are none");
   for (const char *choice : {"", "first", "highest", "C"}) EXPECT_TRUE(parse(locations(), choice).warnings.empty());
 }
 

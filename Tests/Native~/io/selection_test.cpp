@@ -422,7 +422,7 @@ TEST(AtomsNear, ByBruteForce) {
       std::vector<float> positions(3 * 500);
       std::vector<uint8_t> set(500), expected(500);
       for (float &x : positions) x = place(random);
-      for (size_t i = 0; i < 500; ++i) set[i] = random() % 20 == 0;
+      for (size_t i = 0; i < 500; ++i) set[i] = random() % 8 == 0;
       for (size_t i = 0; i < 50; ++i)  // some just there
         for (size_t axis = 0; axis < 3; ++axis)
           positions[3 * i + axis] = positions[3 * (i + 50) + axis] + (axis == 0 ? static_cast<float>(distance) : 0);
@@ -446,6 +446,10 @@ TEST(AtomsNear, FarAwayAndNothing) {
   EXPECT_EQ(atoms_near(positions, {1, 0, 0}, 5), (std::vector<uint8_t>{1, 0, 0}));
   EXPECT_EQ(atoms_near(positions, {0, 1, 0}, 5), (std::vector<uint8_t>{0, 1, 1}));
   EXPECT_EQ(atoms_near({}, {}, 5), std::vector<uint8_t>());
+  const std::vector<float> border = {1000000.5f, 0, 0, 1e6f, 0, 0, 999999.5f, 0, 0};
+  EXPECT_EQ(atoms_near(border, {1, 0, 0}, 5), (std::vector<uint8_t>{1, 0, 0}));
+  EXPECT_EQ(atoms_near(border, {0, 1, 0}, 5), (std::vector<uint8_t>{0, 1, 1}));
+  EXPECT_EQ(atoms_near(border, {0, 0, 1}, 5), (std::vector<uint8_t>{0, 1, 1}));
 }
 
 TEST(NearestWord, IsTheOneThatWasMeant) {

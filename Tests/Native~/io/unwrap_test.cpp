@@ -137,10 +137,15 @@ TEST(LatticeTest, Widths) {
 TEST(LatticeTest, NoBoxes) {
   EXPECT_FALSE(box_from_vectors({{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}));
   EXPECT_FALSE(box_from_vectors({{{10, 0, 0}, {0, 10, 0}, {10, 10, 0}}}));
+  EXPECT_FALSE(box_from_vectors({{{10, 0, 0}, {0, 10, 0}, {10, 10, 1e-6}}}));
+  EXPECT_TRUE(box_from_vectors({{{10, 0, 0}, {0, 10, 0}, {10, 10, 0.1}}}));
+  EXPECT_FALSE(box_from_vectors({{{1e-4, 0, 0}, {0, 1e-4, 0}, {0, 0, 1e-4}}}));
   EXPECT_FALSE(box_from_vectors({{{10, 0, 0}, {0, NAN, 0}, {0, 0, 10}}}));
   EXPECT_FALSE(box_from_vectors({{{10, 0, 0}, {0, INFINITY, 0}, {0, 0, 10}}}));
   EXPECT_TRUE(box_from_vectors({{{10, 0, 0}, {0, 10, 0}, {0, 0, -10}}}));
   EXPECT_FALSE(box_from_edges(10, 10, 10, 90, 90, 180));
+  EXPECT_FALSE(box_from_edges(10, 10, 10, 90, 90, 200));
+  EXPECT_FALSE(box_from_edges(10, 10, 10, 90, NAN, 90));
   EXPECT_FALSE(box_from_edges(10, 10, 10, 0, 90, 90));
   EXPECT_FALSE(box_from_edges(10, 10, 10, 120, 120, 121));  // more than a full turn
   EXPECT_FALSE(box_from_edges(10, 0, 10, 90, 90, 90));
@@ -178,6 +183,37 @@ TEST(UnwrapTest, BondsInTinyBoxes) {
   expect_all_bonds(Box{{{{2.5, 0, 0}, {0, 2.6, 0}, {0, 0, 2.7}}}}, 60, 1000);
   expect_all_bonds(Box{{{{2.5, 0, 0}, {0, 4.5, 0}, {0, 0, 6.5}}}}, 60, 500);
   expect_all_bonds(Box{{{{4.5, 0, 0}, {1, 4.5, 0}, {0.5, -0.7, 6}}}}, 60, 300);
+  expect_all_bonds(Box{{{{1.2, 0, 0}, {0, 1.3, 0}, {0, 0, 1.4}}}}, 5, 10);  // atoms are near to their own images
+}
+
+// Wherever the borders between cells are.
+TEST(UnwrapTest, LongBondsAreFoundEverywhere) {
+  const Elements elements(2, kCarbon);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    Box box{{{{9, 0, 0}, {0, 9, 0}, {0, 0, 9}}}};
+    box.vectors[axis][axis] = 28.3;
+    for (int step = 0; step < 300; ++step) {
+      Positions positions(6, 1);
+      positions[axis] = 0.1f * static_cast<float>(step);
+      positions[3 + axis] = positions[axis] + 1.85f;
+      EXPECT_EQ(Unwrapper(elements.data(), positions.data(), 2, box).bond_count(), 1u) << axis << " " << step;
+    }
+  }
+}
+
+// Next to the border, on its other side, but too near to it to be told from the far one.
+TEST(UnwrapTest, BondsOfAtomsAtTheBorder) {
+  const Box box{{{{20, 0, 0}, {0, 20, 0}, {0, 0, 20}}}};
+  const Elements elements(3, kCarbon);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    Positions positions(9, 1);
+    positions[axis] = -1.5f;
+    positions[3 + axis] = -1e-16f;
+    positions[6 + axis] = 1.5f;
+    const Unwrapper unwrapper(elements.data(), positions.data(), 3, box);
+    EXPECT_EQ(unwrapper.bond_count(), 2u) << axis;
+    EXPECT_EQ(unwrapper.molecule_count(), 1u) << axis;
+  }
 }
 
 TEST(UnwrapTest, BondsDependOnElements) {
@@ -279,25 +315,33 @@ TEST(UnwrapTest, BoxOfTheFrame) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(positions[3 + axis], -0.5, 1e-5);
 }
 
-// An ion that joins both ends of a chain in the first frame and leaves later must not tear the chain.
+// An ion that joins both ends of a chain in the first frame and leaves later must not tear the chain, whichever of them
+// come first.
 TEST(UnwrapTest, IonsDoNotHoldMoleculesTogether) {
   const Box box{{{{30, 0, 0}, {0, 30, 0}, {0, 0, 30}}}};
-  Elements elements = {kOxygen, kCarbon, kCarbon, kCarbon, kCarbon, kCarbon, kOxygen, kCalcium};
-  Positions positions;
-  for (size_t i = 0; i < 7; ++i) {  // most of a ring with the ion in its middle
-    const double turn = 0.7 * static_cast<double>(i);
-    add(positions, {15 + 2.1 * std::cos(turn), 15 + 2.1 * std::sin(turn), 15});
-  }
-  add(positions, {15, 15, 15});
-  const Unwrapper unwrapper(elements.data(), positions.data(), elements.size(), box);
-  EXPECT_EQ(unwrapper.molecule_count(), 1u);
-  for (double place = 1; place < 30; place += 2) {
-    SCOPED_TRACE(place);
-    Positions moved = positions;
-    moved[21] = static_cast<float>(place);  // the ion goes through the box
-    Positions whole = moved;
-    unwrapper.apply(box, whole.data());
-    for (size_t i = 0; i < 7; ++i) EXPECT_EQ(position(whole, i), position(moved, i));
+  for (const size_t ion : {7u, 0u}) {
+    Elements elements = {kOxygen, kCarbon, kCarbon, kCarbon, kCarbon, kCarbon, kOxygen};
+    Positions positions;
+    for (size_t i = 0; i < 7; ++i) {  // most of a ring with the ion in its middle
+      const double turn = 0.7 * static_cast<double>(i);
+      add(positions, {15 + 2.1 * std::cos(turn), 15 + 2.1 * std::sin(turn), 15});
+    }
+    elements.insert(elements.begin() + static_cast<std::ptrdiff_t>(ion), kCalcium);
+    positions.insert(positions.begin() + static_cast<std::ptrdiff_t>(3 * ion), 3, 15.f);
+    const Unwrapper unwrapper(elements.data(), positions.data(), elements.size(), box);
+    EXPECT_EQ(unwrapper.molecule_count(), 1u);
+    const size_t first = ion == 0 ? 1 : 0;
+    for (double place = 1; place < 30; place += 2) {
+      SCOPED_TRACE(place);
+      Positions moved = positions;
+      moved[3 * ion] = static_cast<float>(place);  // the ion goes through the box
+      Positions whole = moved;
+      unwrapper.apply(box, whole.data());
+      for (size_t i = first; i < first + 7; ++i)
+        EXPECT_NEAR(
+            length((position(whole, i) - position(whole, first)) - (position(moved, i) - position(moved, first))), 0,
+            1e-4);
+    }
   }
 }
 
@@ -337,6 +381,15 @@ TEST(UnwrapTest, RefusesCrowds) {
   for (size_t i = 0; i < kDense; ++i) add(dense, random.in_box(small));
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { Unwrapper(elements.data(), dense.data(), kDense, small); }),
              "on top of each other");
+}
+
+// Few atoms may be bonded to each other as they like.
+TEST(UnwrapTest, TakesSmallCrowds) {
+  constexpr size_t kCount = 1200;
+  const Box box{{{{15, 0, 0}, {0, 20, 0}, {0, 0, 20}}}};
+  const Unwrapper unwrapper(Elements(kCount, kCarbon).data(), Positions(3 * kCount, 1.0f).data(), kCount, box);
+  EXPECT_EQ(unwrapper.bond_count(), kCount * (kCount - 1) / 2);
+  EXPECT_EQ(unwrapper.molecule_count(), 1u);
 }
 
 // A box far larger than the atoms in it costs no more than another.
