@@ -94,6 +94,18 @@ TEST(Assembly, LigandsBehindOtherChains) {
   EXPECT_EQ(chains_of(structure), (Names{"A", "A", "A", "A2", "A2", "A2", "B"}));
 }
 
+// Also where one operation moves several chains.
+TEST(Assembly, ChainsComeOneByOne) {
+  std::string remark = kRemark;
+  remark.replace(remark.find("CHAINS: A"), 9, "CHAINS: A, B");
+  const std::string atoms = pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2) + pdb_atom(" CB ", ' ', "ALA", 'B', 1, 5, 5) +
+                            pdb_atom(" C1 ", ' ', "LIG", 'A', 9, 9, 9);
+  const Structure structure =
+      parse(remark.substr(0, remark.find("REMARK 350   BIOMT1   2")) + atoms, assembly_named("1"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 0, 9, 9, 0, 5, 5, 0}));
+  EXPECT_EQ(chains_of(structure), (Names{"A", "A", "B"}));
+}
+
 TEST(Assembly, OfEachModel) {
   const std::string text = kRemark + ("MODEL        1\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2)) +
                            "ENDMDL\nMODEL        2\n" + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 8, 9) + "ENDMDL\n";
@@ -113,6 +125,13 @@ TEST(Assembly, AtomsOnAnAxisAreThereOnce) {
             assembly_named("1"));
   EXPECT_EQ(structure.positions, (std::vector<float>{0.05f, 0, 0, 2, 0, 0, -2, 0, 0}));
   EXPECT_EQ(structure.file_atom_count, 3u);
+}
+
+TEST(Assembly, AtomsBesideAnAxisAreThereTwice) {
+  std::string remark = kRemark;
+  remark.replace(remark.find("7.00000"), 7, "0.00000");
+  const Structure structure = parse(remark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 0.05, 0.11), assembly_named("1"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{0.05f, 0.11f, 0, -0.05f, -0.11f, 0}));
 }
 
 // Pairs of them would not fit into memory.
@@ -169,9 +188,23 @@ TEST(Assembly, OfMmcifFiles) {
   EXPECT_EQ(positions("(2)(P)"), (Positions{8, 1, 3}));
   EXPECT_EQ(positions("(P)(2)"), (Positions{-2, 11, 3}));
   EXPECT_EQ(positions("(1,2)(1,3)"), (Positions{1, 2, 3, 21, 2, 3, 11, 2, 3, 31, 2, 3}));
+  EXPECT_EQ(positions("( 1 , 3 )"), (Positions{1, 2, 3, 21, 2, 3}));
   const Structure structure = parse(cif_file("1"), assembly_named("PAU"), StructureFormat::kMmcif);
   EXPECT_EQ(structure.positions, (Positions{-2, 1, 3, 0, 0, 5}));
   EXPECT_EQ(chains_of(structure), (Names{"X", "X"}));
+  std::string spaces = cif_file("1");
+  spaces.replace(spaces.find("P A,B"), 5, "P ' A , B '");
+  EXPECT_EQ(parse(spaces, assembly_named("PAU"), StructureFormat::kMmcif).positions, structure.positions);
+  const std::string without_atoms = "data_b\n_entry.id b\n";
+  EXPECT_EQ(parse(without_atoms + cif_file("1"), assembly_named("PAU"), StructureFormat::kMmcif).positions,
+            structure.positions);
+}
+
+TEST(Assembly, ACopyHasTheNameOfNoOtherChain) {
+  std::string text = cif_file("1,2");
+  text.replace(text.find("B X ."), 5, "B X2 .");
+  text.insert(text.find("PAU P"), "1 1 B\n");
+  EXPECT_EQ(chains_of(parse(text, assembly_named("1"), StructureFormat::kMmcif)), (Names{"X", "X3", "X2"}));
 }
 
 // mmCIF files list the protein and the ligands of one chain apart, in one row or in several.
@@ -188,7 +221,9 @@ TEST(Assembly, Errors) {
     return error_of(ErrorKind::kUsage, [&] { parse(text, assembly_named(name), format); });
   };
   EXPECT_HAS(usage(pdb_file(), "3", StructureFormat::kPdb), "no assembly '3'; there are 1 and 2");
-  EXPECT_HAS(usage(cif_file("1"), "3", StructureFormat::kMmcif), "no assembly '3'; there are 1 and PAU");
+  std::string of_two_rows = cif_file("1");
+  of_two_rows.insert(of_two_rows.find("PAU P"), "1 1 B\n");
+  EXPECT_HAS(usage(of_two_rows, "3", StructureFormat::kMmcif), "no assembly '3'; there are 1 and PAU");
   EXPECT_HAS(usage(pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2), "1", StructureFormat::kPdb), "describes none");
   EXPECT_HAS(usage("ATOM 1 CA ALA 1 0 0 0 0.5 1.5\n", "1", StructureFormat::kPqr), "only PDB and mmCIF");
   const auto input = [](const std::string &expression) {
@@ -197,6 +232,7 @@ TEST(Assembly, Errors) {
   };
   EXPECT_HAS(input("7"), "operation '7'");
   EXPECT_HAS(input("(1)(7)"), "operation '7'");
+  EXPECT_HAS(input("P-3"), "operation 'P-3'");
   EXPECT_HAS(input("(1-999999999)"), "more than");
   EXPECT_HAS(input("(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)"),
              "more than");
@@ -227,6 +263,11 @@ TEST(Assembly, Errors) {
   input("()");
   EXPECT_HAS(input(" "), "names no operation");
   EXPECT_HAS(input("?"), "names no operation");
+  EXPECT_HAS(input("."), "names no operation");
+  std::string unknown = cif_file("1");
+  unknown.replace(unknown.find("\n2 1 0 0 10"), 11, "\n2 1 0 0 ? ");
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(unknown, assembly_named("1"), StructureFormat::kMmcif); }),
+             "operation '2' lacks a number");
   // Of a PDB file, too; their numbers need not be told apart.
   std::string remarks = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
   for (int k = 0; k <= 100000; ++k)
@@ -236,7 +277,8 @@ TEST(Assembly, Errors) {
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(remarks, assembly_named("1")); }), "more than 100000 operations");
   std::string other = kRemark;
   other += pdb_atom(" CA ", ' ', "ALA", 'C', 1, 1, 2);
-  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }), "no atoms");
+  EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }),
+             "made of chains that have no atoms");
 }
 
 // Damaged remarks give an answer or an error.
