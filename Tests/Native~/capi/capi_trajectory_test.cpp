@@ -196,7 +196,10 @@ TEST(Trajectory, UnwrappedFramesHaveWholeMolecules) {
   EXPECT_EQ(read_frame(trajectory, 1, &frame), kWhole);
   EXPECT_EQ(frame.is_unwrapped, 1);
   std::vector<float> wide(16, -7.f);
-  ASSERT_EQ(qses_trajectory_read_frame(trajectory.get(), 0, wide.data(), 16, 4, nullptr), QSES_OK);
+  qses_frame of_wide;
+  qses_frame_init(&of_wide);
+  ASSERT_EQ(qses_trajectory_read_frame(trajectory.get(), 0, wide.data(), 16, 4, &of_wide), QSES_OK);
+  EXPECT_EQ(of_wide.is_unwrapped, 1);
   EXPECT_EQ(wide[12], kWhole[9]);
   EXPECT_EQ(wide[15], -7.f);
 }
@@ -204,6 +207,7 @@ TEST(Trajectory, UnwrappedFramesHaveWholeMolecules) {
 TEST(Trajectory, UnwrappedFramesTellThatTheyHaveNoBox) {
   for (const size_t boxless : {0, 1}) {
     const TrajectoryPointer trajectory = open_bytes(dcd({kTorn, kTorn}, {10, 10, 10}, boxless));
+    EXPECT_EQ(info_of(trajectory).has_box, boxless == 0 ? 0 : 1);
     ASSERT_EQ(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_OK) << qses_last_error();
     qses_frame frame;
     qses_frame_init(&frame);
@@ -309,6 +313,7 @@ TEST(Trajectory, OneIsSingular) {
 TEST(Trajectory, Errors) {
   const std::string bytes = dcd(some_frames(2));
   qses_trajectory *opened = reinterpret_cast<qses_trajectory *>(&opened);
+  qses_trajectory *of_memory = opened;
   expect_error(qses_trajectory_open("/nowhere/t.xtc", QSES_TRAJECTORY_AUTO, &opened), QSES_FILE_ERROR,
                {"/nowhere/t.xtc", "no such file"});
   EXPECT_EQ(opened, nullptr);
@@ -318,8 +323,9 @@ TEST(Trajectory, Errors) {
                {"bytes", "NULL"});
   expect_error(qses_trajectory_open_memory("what is this", 12, QSES_TRAJECTORY_AUTO, &opened), QSES_FILE_ERROR,
                {"format"});
-  expect_error(qses_trajectory_open_memory(bytes.data(), 20, QSES_TRAJECTORY_DCD, &opened), QSES_FILE_ERROR,
+  expect_error(qses_trajectory_open_memory(bytes.data(), 20, QSES_TRAJECTORY_DCD, &of_memory), QSES_FILE_ERROR,
                {"cut off"});
+  EXPECT_EQ(of_memory, nullptr);
   expect_error(qses_trajectory_open_memory(bytes.data(), 0, QSES_TRAJECTORY_DCD, &opened), QSES_FILE_ERROR, {"empty"});
   // (Numbers that name no format: capi_c99_test.c.)
 
@@ -343,6 +349,7 @@ TEST(Trajectory, Errors) {
                {"struct_size"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), nullptr, 5), QSES_INVALID_ARGUMENT, {"elements", "NULL"});
   expect_error(qses_trajectory_unwrap(trajectory.get(), kCarbons, 4), QSES_INVALID_ARGUMENT, {"count is 4"});
+  expect_error(qses_trajectory_warning(trajectory.get(), 0, nullptr), QSES_INVALID_ARGUMENT, {"sentence", "NULL"});
   expect_error(qses_trajectory_info(trajectory.get(), nullptr), QSES_INVALID_ARGUMENT, {"description", "NULL"});
   qses_trajectory_close(nullptr);
   qses_trajectory_description_init(nullptr);
