@@ -2,6 +2,7 @@
 // The flags of pictures and pages.
 #include "cli/picture_options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/exit_code.h"
@@ -34,13 +35,13 @@ void read_background(const std::string &text, PictureOptions &picture) {
     throw Failure(kUsage, "--background: '" + text + "' is neither transparent nor a colour #RRGGBB, as #C08000");
 }
 
-// "1,0,2.5" with as many numbers as there are.
+// "1,0,2.5" with as many finite numbers as there are.
 template <size_t kCount>
 bool parse_numbers(const std::string &text, std::array<double, kCount> &numbers) {
   const std::vector<std::string> parts = io::split(text, ',');
   if (parts.size() != kCount) return false;
   for (size_t k = 0; k < kCount; ++k)
-    if (!io::parse_number(parts[k], numbers[k]) || !(std::abs(numbers[k]) <= 1e6)) return false;
+    if (!io::parse_number(parts[k], numbers[k])) return false;
   return true;
 }
 
@@ -53,8 +54,12 @@ std::array<double, 3> read_direction(const std::string &flag, const std::string 
     direction[static_cast<size_t>(axis[0] - 'x')] = is_negative ? -1 : 1;
     return direction;
   }
-  if (!parse_numbers(text, direction) || std::hypot(direction[0], direction[1], direction[2]) < 1e-6)
+  if (!parse_numbers(text, direction))
     throw Failure(kUsage, flag + ": '" + text + "' is no direction: they are written x, -z, or as 1,0,2.5");
+  const double largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
+  if (largest == 0) throw Failure(kUsage, flag + ": '" + text + "' is no direction: all of it is 0");
+  // Its length does not matter, but must be one that float32 can square. Powers of two change no digit.
+  for (double &number : direction) number = std::ldexp(number, -std::ilogb(largest));
   return direction;
 }
 
@@ -80,6 +85,8 @@ void add_picture_options(CLI::App *app, PictureOptions &picture) {
       [&picture](const std::string &text) {
         if (!parse_numbers(text, picture.turn))
           throw Failure(kUsage, "--turn: '" + text + "' is not two angles in degrees, as 30,-15");
+        for (double &angle : picture.turn)
+          angle = std::fmod(angle, 360);  // of whole turns float32 would keep few digits
       });
   add_number(app, "--zoom", "--zoom", picture.zoom, 0.01, 100, "Enlarge: 1 fills the picture", false);
   add_count(app, "--samples", "--samples", picture.samples, 1, 16,

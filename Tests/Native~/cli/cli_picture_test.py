@@ -287,6 +287,18 @@ class Pictures(PictureTest):
                                "--backend", "cpu"], stdout=subprocess.PIPE, check=True).stdout
         self.assertEqual(made, (self.folder / "a.png").read_bytes())
 
+    def test_directions_of_any_length_and_whole_turns(self):
+        def picture(*arguments):
+            self.run_cpu(CRAMBIN, "-v", "2", "-o", "a.png", "--size", "40x40", *arguments)
+            return (self.folder / "a.png").read_bytes()
+        expected = picture("--view", "1,2,-3", "--up", "0,1,0.5")
+        for view, up in (("0.25,0.5,-0.75", "0,4,2"), ("1e-30,2e-30,-3e-30", "0,1e300,5e299"), ("1e300,2e300,-3e300", "0,2e-310,1e-310")):
+            self.assertEqual(picture("--view", view, "--up", up), expected, view)
+        expected = picture("--turn", "280,-80")
+        self.assertNotEqual(expected, picture("--turn", "0,0"))
+        for turn in ("1000,-800", "1e9,-1000000160"):  # 280 and 2777777 whole turns
+            self.assertEqual(picture("--turn", turn), expected, turn)
+
     def test_what_is_refused(self):
         for arguments, parts in (
                 (["-o", "a.ply", "--size", "10x10"], ["--size", "a.ply"]),
@@ -297,7 +309,7 @@ class Pictures(PictureTest):
                 (["-o", "a.png", "--size", "100000x10"], ["--size", "16384"]),
                 (["-o", "a.png", "--size", "10x16385"], ["--size", "16384"]),
                 (["-o", "a.png", "--background", "blue"], ["--background", "blue", "transparent"]),
-                (["-o", "a.png", "--view", "0,0,0"], ["--view", "0,0,0"]),
+                (["-o", "a.png", "--view", "0,0,0"], ["--view", "'0,0,0'", "all of it is 0"]),
                 (["-o", "a.png", "--view", "w"], ["--view", "'w'"]),
                 (["-o", "a.png", "--up", "1,2"], ["--up", "1,2"]),
                 (["-o", "a.png", "--turn", "nan,0"], ["--turn", "nan"]),
