@@ -45,8 +45,12 @@ void check_settings(const qses_settings &s) {
     invalid("settings.level_count is " + std::to_string(s.level_count) + ": at most " +
             std::to_string(QSES_MAX_LEVELS));
   for (uint32_t k = 0; k < s.level_count; ++k) {
-    check_range("settings.levels", static_cast<double>(s.levels[k]), 0.001, 100, " Å");
-    if (k > 0 && !(s.levels[k] < s.levels[k - 1])) invalid("settings.levels must fall from each one to the next");
+    const auto name_of = [](uint32_t level) { return "settings.levels[" + std::to_string(level) + "]"; };
+    const double level = static_cast<double>(s.levels[k]);
+    check_range(name_of(k).c_str(), level, 0.001, 100, " Å");
+    if (k > 0 && !(s.levels[k] < s.levels[k - 1]))
+      invalid(name_of(k) + " is " + number_text(level) + ": it must be below " + name_of(k - 1) + ", which is " +
+              number_text(static_cast<double>(s.levels[k - 1])));
   }
   check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
   check_range("settings.show_ms_per_mb", static_cast<double>(s.show_ms_per_mb), 0, 60000, " ms");

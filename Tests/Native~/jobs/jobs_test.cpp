@@ -402,8 +402,12 @@ TEST(Jobs, BadRequestsAreRefusedAtOnce) {
   s.levels[1] = 2.f;
   s.level_count = 2;
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "settings.levels[1] is 2: it must be below settings.levels[0], which is 1");
   s.levels[1] = 1.f;  // once more the same
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  s.levels[1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "settings.levels[1] is nan: it must lie between 0.001 and 100 Å");
   s.level_count = QSES_MAX_LEVELS + 1;
   EXPECT_EQ(qses_begin(context, &s), QSES_INVALID_ARGUMENT);
   for (const float budget :
