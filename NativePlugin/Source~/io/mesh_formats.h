@@ -13,7 +13,8 @@ void write_ply_text(AtomicFile &file, const MeshView &mesh);
 void write_stl(AtomicFile &file, const MeshView &mesh);
 void write_glb(AtomicFile &file, const MeshView &mesh);
 void write_off(AtomicFile &file, const MeshView &mesh);
-void write_msms(AtomicFile &vertices, AtomicFile &faces, const MeshView &mesh);
+void write_msms_vertices(AtomicFile &file, const MeshView &mesh);
+void write_msms_faces(AtomicFile &file, const MeshView &mesh);
 
 // Whether a colour is not opaque.
 bool has_alpha(const MeshView &mesh);

@@ -22,7 +22,8 @@ uint32_t kind_of(const MeshView &mesh, size_t t) {
   return kinds[1] == kinds[2] ? kinds[1] : 1;
 }
 
-double area_of(const MeshView &mesh) {
+// Vertices per square of the unit.
+double density_of(const MeshView &mesh) {
   double area = 0;
   for (size_t t = 0; t < mesh.triangle_count; ++t) {
     const float *const a = mesh.positions + 3 * size_t(mesh.indices[3 * t]);
@@ -35,19 +36,18 @@ double area_of(const MeshView &mesh) {
     }
     area += std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
   }
-  return area;
+  return area > 0 ? mesh.vertex_count / area : 0;
 }
 
-// The three lines before the numbers; what: "vertices" or "faces", noun: as MSMS names their number. density: vertices
-// per square of the unit.
-std::string header_of(const MeshView &mesh, const char *what, const char *noun, uint32_t count, double density) {
+// The three lines before the numbers; what: "vertices" or "faces", noun: as MSMS names their number.
+std::string header_of(const MeshView &mesh, const char *what, const char *noun, uint32_t count) {
   const auto fixed = [](double value) {
     char text[400];  // the largest double has 309 digits before the point
     return std::string(text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 2).ptr);
   };
   return std::string("# QuickSES molecular surface, ") + what + ", lengths in " + mesh.unit + "\n#" + noun +
          " #sphere density probe_r\n" + std::to_string(count) + " " + std::to_string(mesh.atom_count) + " " +
-         fixed(density) + " " + fixed(mesh.probe_radius) + "\n";
+         fixed(density_of(mesh)) + " " + fixed(mesh.probe_radius) + "\n";
 }
 
 char *put_fixed(char *out, float value) {
@@ -59,11 +59,9 @@ char *put_fixed(char *out, float value) {
 
 }  // namespace
 
-void write_msms(AtomicFile &vertices, AtomicFile &faces, const MeshView &mesh) {
-  const double area = area_of(mesh);
-  const double density = area > 0 ? mesh.vertex_count / area : 0;
-  vertices.write(header_of(mesh, "vertices", "vertex", mesh.vertex_count, density));
-  put_rows(vertices, mesh.vertex_count, 6 * 50 + 3 * kMaxNumber, [&](char *out, size_t i) {
+void write_msms_vertices(AtomicFile &file, const MeshView &mesh) {
+  file.write(header_of(mesh, "vertices", "vertex", mesh.vertex_count));
+  put_rows(file, mesh.vertex_count, 6 * 50 + 3 * kMaxNumber, [&](char *out, size_t i) {
     for (int axis = 0; axis < 3; ++axis) out = put_fixed(out, mesh.positions[3 * i + axis]);
     for (int axis = 0; axis < 3; ++axis) out = put_fixed(out, mesh.normals[3 * i + axis]);
     *out++ = '0';
@@ -74,8 +72,11 @@ void write_msms(AtomicFile &vertices, AtomicFile &faces, const MeshView &mesh) {
     *out++ = '\n';
     return out;
   });
-  faces.write(header_of(mesh, "faces", "faces", mesh.triangle_count, density));
-  put_rows(faces, mesh.triangle_count, 5 * kMaxNumber, [&](char *out, size_t t) {
+}
+
+void write_msms_faces(AtomicFile &file, const MeshView &mesh) {
+  file.write(header_of(mesh, "faces", "faces", mesh.triangle_count));
+  put_rows(file, mesh.triangle_count, 5 * kMaxNumber, [&](char *out, size_t t) {
     for (int corner = 0; corner < 3; ++corner) {
       out = put_text(out, mesh.indices[3 * t + corner] + 1);
       *out++ = ' ';

@@ -79,10 +79,11 @@ void write_mesh(const std::string &path, const MeshView &mesh, MeshFormat format
       write_off(file, mesh);
       break;
     case MeshFormat::kMsms: {
+      write_msms_vertices(file, mesh);
+      file.finish();  // before the other is opened: both may be pipes that somebody reads one after the other
       AtomicFile faces(mesh_files_of(path).back());
-      write_msms(file, faces, mesh);
+      write_msms_faces(faces, mesh);
       faces.finish();
-      file.finish();
       faces.publish();
       file.publish();
       return;

@@ -217,6 +217,21 @@ class Replacing(FilesTest):
             self.assertTrue((self.folder / name).is_fifo())
 
 
+    @unittest.skipIf(IS_WINDOWS, "no named pipes")
+    def test_two_named_pipes_that_are_read_one_after_the_other(self):
+        self.run_cpu("p.pdb", "-v", "2", "-o", "file.vert")
+        for name in ("pipe.vert", "pipe.face"):
+            os.mkfifo(self.folder / name)
+        reader = subprocess.Popen("cat pipe.vert > read.vert && cat pipe.face > read.face", shell=True, cwd=self.folder,
+                                  start_new_session=True)
+        self.addCleanup(reader.wait)
+        self.addCleanup(lambda: reader.poll() is None and os.killpg(reader.pid, signal.SIGKILL))
+        self.run_cpu("p.pdb", "-v", "2", "-o", "pipe.vert")
+        self.assertEqual(reader.wait(timeout=cli_test.PATIENCE), 0)
+        for name in (".vert", ".face"):
+            self.assertEqual((self.folder / ("read" + name)).read_bytes(), (self.folder / ("file" + name)).read_bytes())
+
+
 class Names(FilesTest):
     """A user may be called anything, and the system's locale may know nothing of it."""
     def test_they_have_letters_of_all_kinds(self):
