@@ -202,6 +202,13 @@ void check_standard_output(const Options &options) {
   }
 }
 
+void check_standard_input(const Options &options) {
+  const auto count = std::count(options.inputs.begin(), options.inputs.end(), "-");
+  if (count > 1)
+    throw Failure(kUsage,
+                  "'-': standard input is given " + std::to_string(count) + " times, and can be read only once");
+}
+
 // As from a variable of a shell that is not set. Without a file to write to, a run would do nothing and say nothing.
 void check_values(const CLI::App &used) {
   for (const CLI::Option *option : used.get_options())
@@ -220,6 +227,7 @@ void check_devices(const Options &options) {
 
 void check(const Options &options, const std::function<bool(const char *)> &given) {
   check_devices(options);
+  check_standard_input(options);
   if (options.compute.method == QSES_METHOD_GRID && options.compute.surface != QSES_SURFACE_SES)
     throw Failure(kUsage, "--method grid makes the solvent-excluded surface only: leave --surface at ses");
   const bool is_gaussian = options.compute.surface == QSES_SURFACE_GAUSSIAN;

@@ -48,11 +48,12 @@ void wait_for_stop(sigset_t signals) {
   raise(signal_number);
 }
 
-// A file that is opened must not become what others of this process take for standard output.
+// A file that is opened must not become what others of this process take for standard output. What was closed can't be
+// used all the same: standard input is not read from, nor are the others written to.
 void occupy_standard_streams() {
   int descriptor = 0;
-  do descriptor = open("/dev/null", O_RDONLY);
-  while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+  if (fcntl(STDIN_FILENO, F_GETFD) < 0) descriptor = open("/dev/null", O_WRONLY);  // the first number that is free
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO) descriptor = open("/dev/null", O_RDONLY);
   if (descriptor > STDERR_FILENO) close(descriptor);
 }
 

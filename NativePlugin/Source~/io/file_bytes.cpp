@@ -76,6 +76,7 @@ std::string read_to_end(std::FILE *file, size_t size, const std::string &name) {
     if (read > limit) fail_too_large(name, limit);
     if (count == 0 && !is_interrupted) break;
   }
+  if (std::ferror(file) && errno == EBADF) fail_input("'" + name + "' is closed: there is nothing to read from");
   if (std::ferror(file)) fail_input("'" + name + "' can't be read: " + std::strerror(errno));
   if (bytes.empty()) fail_input("'" + name + "' is empty");
   return bytes;

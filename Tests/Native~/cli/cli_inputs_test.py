@@ -6,6 +6,7 @@ usage: cli_inputs_test.py PROGRAM [unittest options]      (or QUICKSES_PROGRAM i
 import csv
 import gzip
 import json
+import os
 import subprocess
 import unittest
 
@@ -130,6 +131,20 @@ class StandardInput(InputTest):
         self.assertIn(b"no cavities", self.run_with(text, "cavities", "-").stdout)
         self.assertIn(b"12 atoms", self.run_with(text, "bench", "-", "--repeat", 1).stdout)
         self.assertIn(b"3 frames of 12 atoms", self.run_with(text, "-", "--trajectory", "t.dcd", "--csv", "a.csv").stdout)
+
+    def test_it_can_not_be_read_twice(self):
+        text = (self.folder / self.names[0]).read_bytes()
+        for arguments in (["-", "-", "-o", "out/%s.ply"], ["measure", "-", self.names[1], "-"], ["bench", "-", "-"]):
+            result = self.run_with(text, *arguments, code=cli_test.USAGE)
+            self.assertIn(b"'-': standard input is given 2 times", result.stderr)
+        self.assertEqual(self.outputs(), [])
+
+    @unittest.skipIf(cli_test.IS_WINDOWS, "files that are opened take its place")
+    def test_it_is_closed(self):
+        result = subprocess.run([cli_test.PROGRAM, "-"], preexec_fn=lambda: os.close(0), capture_output=True,
+                                timeout=cli_test.PATIENCE)
+        self.assertEqual((result.returncode, result.stdout), (INPUT, b""))
+        self.assertIn(b"'standard input' is closed", result.stderr)
 
     def test_hints_name_it(self):
         text = (self.folder / self.names[0]).read_bytes()
