@@ -216,6 +216,12 @@ void check_values(const CLI::App &used) {
       if (value.empty()) throw Failure(kUsage, option->get_name() + ": '' is given, which is nothing");
 }
 
+// CLI11 would take --quiet=no for the flag left out, and --quiet=3 for the flag.
+void refuse_values_of_flags(CLI::App *command) {
+  for (CLI::Option *option : command->get_options())
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+}
+
 void check_devices(const Options &options) {
   const DeviceChoice &devices = options.compute.devices;
   if (devices.is_given() && options.compute.backend == QSES_BACKEND_CPU)
@@ -343,6 +349,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
   add_surface_choice(bench, options.compute);
   add_file_options(bench, options);
 
+  for (CLI::App *command : {&app, measure, cavities, bench}) refuse_values_of_flags(command);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   if (arguments.size() == 1 && (arguments[0] == "--help-man" || arguments[0] == "--help-completion")) {
     out << (arguments[0] == "--help-man" ? manual_page(app, qses_version()) : bash_completion(app));
@@ -366,7 +373,7 @@ Options parse_options(int argc, char **argv, std::ostream &out) {
     std::string message = error.what();
     for (char &c : message)
       if (c == '\n') c = ' ';
-    throw Failure(kUsage, explain_count(message));
+    throw Failure(kUsage, explain_count(message, arguments));
   }
   const CLI::App *used = &app;
   const std::pair<const CLI::App *, Options::Command> commands[] = {{measure, Options::Command::kMeasure},

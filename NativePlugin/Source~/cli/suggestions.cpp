@@ -90,7 +90,15 @@ std::string explain_extra(const CLI::App &command, const std::vector<std::string
          (io::find_mesh_format(extra) ? "did you mean -o " + extra + "?" : "see " + help_of(command));
 }
 
-std::string explain_count(const std::string &sentence) {
+std::string explain_count(const std::string &sentence, const std::vector<std::string> &arguments) {
+  const size_t no_value = sentence.find(" was given a disallowed flag override");
+  if (no_value != std::string::npos) {
+    const std::string flag = "--" + sentence.substr(0, no_value), before = flag + "=";
+    for (const std::string &argument : arguments)
+      if (argument.compare(0, before.size(), before) == 0)
+        return flag + ": '" + argument.substr(before.size()) + "' is given, and it takes no value";
+    return flag + ": it takes no value";
+  }
   const std::string flag = sentence.substr(0, sentence.find(':'));
   const std::string too_often = ": At Most 1 required but received ", before_value = ": 1 required ",
                     missing = " missing";

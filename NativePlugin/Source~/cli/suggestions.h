@@ -24,7 +24,8 @@ void check_command(const CLI::App &app, const std::string &first_input);
 // A sentence about an argument that nobody expected.
 std::string explain_extra(const CLI::App &command, const std::vector<std::string> &arguments, const std::string &extra);
 
-// A sentence in the place of CLI11's about a flag without its value, or that was given too often.
-std::string explain_count(const std::string &sentence);
+// A sentence in the place of CLI11's about a flag without its value, with one that it does not take, or that was given
+// too often.
+std::string explain_count(const std::string &sentence, const std::vector<std::string> &arguments);
 
 }  // namespace quickses::cli

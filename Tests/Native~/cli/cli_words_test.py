@@ -47,6 +47,14 @@ class Suggestions(ProgramTest):
         self.assert_fails(USAGE, ["--spacing: it is given 3 times"], CRAMBIN, "-v", "1", "--spacing", "2", "-v3")
         self.assert_fails(USAGE, ["--output: it is given 2 times"], CRAMBIN, "-o", "a.ply", "-o", "b.ply")
 
+    def test_flags_that_take_no_value(self):
+        for flag, value in (("quiet", "3"), ("quiet", "false"), ("no-water", "no"), ("no-hetero", "xyz"), ("outer", "0"),
+                            ("version", "2"), ("help", "all")):
+            self.assert_fails(USAGE, [f"--{flag}: '{value}' is given, and it takes no value"], CRAMBIN, f"--{flag}={value}")
+        self.assert_fails(USAGE, ["--quiet: 'no' is given"], "measure", CRAMBIN, "--quiet=no")
+        self.assert_fails(USAGE, ["--measure: 'off' is given"], "bench", CRAMBIN, "--measure=off")
+        self.assertEqual(self.run_cpu(CRAMBIN, "-v", "3", "--quiet", "--quiet").stdout, "")
+
     def test_an_output_without_its_flag(self):
         for name in ("out.ply", "out.obj", "out.stl"):
             self.assert_suggests("-o " + name, CRAMBIN, name)
