@@ -5,6 +5,7 @@
 #include <set>
 
 #include "io/error.h"
+#include "io/text.h"
 
 namespace quickses::io {
 namespace {
@@ -19,7 +20,8 @@ AlternateLocations::AlternateLocations(const std::string &choice) {
   takes_highest_ = choice == "highest";
   if (choice.empty() || choice == "first" || takes_highest_) return;
   if (choice.size() != 1)
-    fail_usage("the alternate location '" + choice + "' is neither 'first', 'highest' nor a label of one letter");
+    fail_usage("the alternate location '" + excerpt_of(choice) +
+               "' is neither 'first', 'highest' nor a label of one letter");
   wanted_ = choice[0];
 }
 

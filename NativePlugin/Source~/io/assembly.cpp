@@ -27,7 +27,7 @@ constexpr double kSamePlace = 0.2;          // Å
 
 [[noreturn]] void fail_unknown(const std::string &path, const std::string &name,
                                const std::vector<std::string> &names) {
-  fail_usage("'" + path + "' has no assembly '" + name + "'; " +
+  fail_usage("'" + path + "' has no assembly '" + excerpt_of(name) + "'; " +
              (names.empty() ? "it describes none"
                             : "there " + std::string(names.size() == 1 ? "is " : "are ") + list_of(names)));
 }

@@ -130,7 +130,7 @@ class Evaluation {
       alone.names = {name};
       if (std::none_of(structure_.atoms.begin(), structure_.atoms.end(),
                        [&](const AtomInfo &atom) { return matches(alone, atom); }))
-        fail_usage("nothing has the name '" + name +
+        fail_usage("nothing has the name '" + excerpt_of(name) +
                    "': selections know no wildcards; several names are put side by side, as in 'name CA CB', and " +
                    "elements have a word of their own, as in 'element H'");
     }
@@ -226,7 +226,11 @@ void add_once(std::vector<std::string> &names, const std::string &name) {
 
 }  // namespace
 
-Selection::Selection(std::string text) : text_(trim(text)) {
+Selection::Selection(std::string text) {
+  // It may have several lines, as where it comes from a file.
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return is_blank(c) || c == '\n'; }, ' ');
+  text_ = trim(text);
   if (!text_.empty()) root_ = parse_selection(text_);
 }
 

@@ -118,13 +118,13 @@ class Parser {
 
  private:
   [[noreturn]] void fail(const std::string &what) const {
-    fail_usage("the selection '" + text_ + "' can't be understood: " + what);
+    fail_usage("the selection '" + excerpt_of(text_) + "' can't be understood: " + what);
   }
   [[noreturn]] void fail_at(size_t place, const std::string &what) const {
     fail(what + " (at character " + std::to_string(place + 1) + ")");
   }
 
-  static std::string quoted(std::string_view word) { return "'" + std::string(word) + "'"; }
+  static std::string quoted(std::string_view word) { return "'" + excerpt_of(word) + "'"; }
 
   void skip_blanks() {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
@@ -275,7 +275,7 @@ class Parser {
   }
 
   [[noreturn]] void fail_unknown(std::string_view word, size_t place) const {
-    const std::string nearest = nearest_selection_word(word), name(word);
+    const std::string nearest = nearest_selection_word(word), name = excerpt_of(word);
     fail("'" + name + "' at character " + std::to_string(place + 1) + " is no word of selections; " +
          (nearest.empty() ? "is it a name, as in 'chain " + name + "' or 'resname " + name + "'?"
                           : "did you mean '" + nearest + "'?"));
@@ -294,7 +294,7 @@ class Parser {
     } catch (const std::bad_alloc &) {
       throw;
     } catch (const std::exception &error) {
-      fail(error.what());
+      fail(excerpt_of(error.what()));
     }
     return term;
   }

@@ -204,7 +204,7 @@ void leave_out(Structure &structure, const Filter &filter, const std::string &pa
   if (selects && std::find(mask.begin(), mask.end(), 1) == mask.end())
     fail_input(
         "no atoms of " + which + "'" + path + "' are left after the filters: the selection '" +
-        filter.selection.text() +
+        excerpt_of(filter.selection.text()) +
         "' names none (it may be words such as 'chain A and protein', or CID such as '//A'); the structure has " +
         contents_of(structure));
   size_t kept = 0;

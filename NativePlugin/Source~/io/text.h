@@ -99,6 +99,18 @@ bool parse_integer(std::string_view text, Integer &value) {
   return result.ec == std::errc() && result.ptr == text.data() + text.size();
 }
 
+// What a message quotes of a text that a user may have made by a program: of a long one the two ends, in whole letters,
+// so that what else the message says is not lost behind it.
+inline std::string excerpt_of(std::string_view text) {
+  constexpr size_t kMost = 200, kEnd = 90;  // bytes
+  const auto continues_letter = [&](size_t k) { return (static_cast<unsigned char>(text[k]) & 0xc0) == 0x80; };
+  if (text.size() <= kMost) return std::string(text);
+  size_t first = kEnd, last = text.size() - kEnd;
+  while (first > 0 && continues_letter(first)) --first;
+  while (last < text.size() && continues_letter(last)) ++last;
+  return std::string(text.substr(0, first)) + " ... " + std::string(text.substr(last));
+}
+
 // "1 atom", "2 atoms". many: where it is not the one with an s.
 inline std::string counted(uint64_t count, const std::string &one, const std::string &many = "") {
   return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);

@@ -200,6 +200,11 @@ TEST(Selection, Errors) {
   refused("//A/10-x", {"//A/10-x"});
   refused("protien or water", {"'protien' at character 1 ", "did you mean 'protein'?"});
   refused(nullptr, {"selection", "NULL"});
+  // However long it is, what is wrong with it is told.
+  std::string many = "chain A";
+  for (int k = 0; k < 1000; ++k) many += " or chain \xc3\x84";
+  refused((many + " or").c_str(), {"'chain A or ", " ... ", " or'", "something is missing at its end"});
+  refused(("protein and " + std::string(5000, 'x')).c_str(), {"xxx ... xxx", "is no word of selections; is it a name"});
   const auto select_all = [&](size_t count) {
     return qses_structure_select(structure.get(), "", mask.data(), count, nullptr);
   };

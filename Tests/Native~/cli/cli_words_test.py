@@ -69,6 +69,29 @@ class Suggestions(ProgramTest):
         self.assert_fails(USAGE, ["'protien' at character 1 ", "did you mean 'protein'?"], CRAMBIN, "--select", "protien")
         self.assert_fails(INPUT, ["'water' names none", "chain A", "protein"], CRAMBIN, "--select", "water")
 
+    def test_selections_of_several_lines(self):
+        expected = self.run_cpu(CRAMBIN, "-v", "2", "--select", "chain A and resid 1-20").stdout.split(", cpu")[0]
+        for text in ("chain A and\nresid\n1-20", "\n\tchain A\r\n and resid 1-20\n", "chain\tA and resid\v1-20\f\n",
+                     "//A/1-20\n"):
+            self.assertEqual(self.run_cpu(CRAMBIN, "-v", "2", "--select", text).stdout.split(", cpu")[0], expected, text)
+
+    def test_long_selections(self):
+        many = " or ".join(f"resid {k}" for k in range(1, 2000))
+        self.run_cpu(CRAMBIN, "-v", "3", "--select", many)
+        for selection, reason in ((many + " or", "something is missing at its end"),
+                                  ("protein and chain " + 3000 * "Ä", "names none"),
+                                  ("protein and " + 3000 * "x", "is no word of selections; is it a name"),
+                                  ("within " + 3000 * "9x" + " of ligand", "'within' wants a distance"),
+                                  ("resid " + 3000 * "x", "is no residue number"), ("/" + 3000 * "/", "can't be understood"),
+                                  ("name " + 3000 * "C" + "*", "selections know no wildcards")):
+            result = self.run_program(CRAMBIN, "--select", selection, code=None)
+            self.assertIn(result.returncode, (USAGE, INPUT))
+            self.assertIn(reason, result.stderr)
+            self.assertLess(len(result.stderr), 1200)
+        for flag, reason in (("--altloc", "neither 'first'"), ("--assembly", "there is 1")):
+            self.assert_fails(USAGE, [reason], CRAMBIN, flag, 3000 * "ä")
+            self.assertLess(len(self.run_program(CRAMBIN, flag, 3000 * "ä", code=USAGE).stderr), 600)
+
     def test_assemblies(self):
         self.assert_fails(USAGE, ["assembly '7'", "there is 1"], CRAMBIN, "--assembly", "7")
         self.assert_fails(USAGE, ["--assembly", "--trajectory"], CRAMBIN, "--assembly", "1", "--trajectory", "a.xtc")
