@@ -50,8 +50,23 @@ inline std::string_view trim(std::string_view text) {
 // Editors of Windows put it before a text.
 inline bool has_byte_order_mark(std::string_view text) { return text.substr(0, 3) == "\xef\xbb\xbf"; }
 
-// Of a text as editors write it: without that mark, and with the line ends that next_line knows where it has CR alone.
+// PowerShell writes UTF-16, with a mark before it, where its output goes to a file. What is no ASCII becomes a question
+// mark, as names have no other letters.
+inline void narrow_utf16(std::string &text) {
+  const bool is_big = text.compare(0, 2, "\xfe\xff") == 0;
+  if (!is_big && text.compare(0, 2, "\xff\xfe") != 0) return;
+  size_t count = 0;
+  for (size_t k = 2; k + 1 < text.size(); k += 2) {
+    const char high = text[is_big ? k : k + 1], low = text[is_big ? k + 1 : k];
+    text[count++] = high == 0 && static_cast<unsigned char>(low) < 0x80 ? low : '?';
+  }
+  text.resize(count);
+}
+
+// Of a text as editors write it: in bytes, without a mark, and with the line ends that next_line knows where it has CR
+// alone.
 inline void unify_text(std::string &text) {
+  narrow_utf16(text);
   if (has_byte_order_mark(text)) text.erase(0, 3);
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
 }

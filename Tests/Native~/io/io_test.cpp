@@ -376,6 +376,31 @@ TEST_F(IoTest, AByteOrderMarkIsNoPartOfTheText) {
 
 // ---- radii
 
+// As where PowerShell leads the output of another program to a file.
+TEST_F(IoTest, TextMayBeUtf16) {
+  const std::string pdb = "REMARK \xe4\r\n" + pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N");
+  for (const bool is_big : {false, true}) {
+    const auto wide = [is_big](const std::string &text) {
+      std::string bytes = is_big ? "\xfe\xff" : "\xff\xfe";
+      for (const char c : text) bytes += is_big ? std::string{'\0', c} : std::string{c, '\0'};
+      return bytes;
+    };
+    const Structure structure = only_model(write("a.pdb", wide(pdb + pdb)));
+    EXPECT_EQ(structure.atoms.size(), 2u);
+    EXPECT_EQ(structure.atoms.front().residue_name, "GLY");
+    EXPECT_EQ(only_model(write("a", wide(pdb))).atoms.size(), 1u);
+    EXPECT_EQ(only_model(write_gz("a.pdb.gz", wide(pdb))).atoms.size(), 1u);
+    EXPECT_EQ(only_model(write("a.xyzr", wide("1 2 3 1\r\n4 5 6 1\r\n"))).atoms.size(), 2u);
+    EXPECT_EQ(only_model(write("cut.xyzr", wide("1 2 3 1\n") + "x")).atoms.size(), 1u);
+    EXPECT_EQ(only_model(write("a.cif", wide(std::string(kCifHead) + "ATOM 10 C CA . GLY A 1 1 1 2 3 1 10 27 X 1\n")))
+                  .atoms.size(),
+              1u);
+    EXPECT_EQ(find_radii(write("r.txt", wide("C 1\nN 2\n"))).by_element[7], 2.0f);
+    EXPECT_HAS(input_error(write("b.pdb", wide("<html></html>"))), "web page");
+    EXPECT_HAS(input_error(write("b.pdb", wide(""))), "no atoms");
+  }
+}
+
 float radius_of(const RadiusTable &table, int atomic_number) { return table.at(atomic_number); }
 
 TEST_F(IoTest, RadiiOfThePaperAreTheDefault) {
