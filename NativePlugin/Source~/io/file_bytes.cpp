@@ -158,6 +158,7 @@ std::string unpack_gzip(std::string bytes, const std::string &name) {
   if (!has_gzip_magic(bytes)) return bytes;
   std::string text = gunzip(bytes, name);
   if (text.empty()) fail_input("'" + name + "' is empty");
+  if (has_gzip_magic(text)) fail_input("'" + name + "' is gzip data that was packed twice: it has to be unpacked once");
   return text;
 }
 

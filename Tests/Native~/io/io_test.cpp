@@ -334,6 +334,8 @@ TEST_F(IoTest, GzipIsRead) {
   EXPECT_HAS(input_error(write("c.pdb.gz", one)), "gzip");
   EXPECT_HAS(input_error(write_gz("d.pdb.gz", "")), "is empty");
   EXPECT_HAS(input_error(write_gz("d.xyzr.gz", "")), "is empty");
+  EXPECT_HAS(input_error(write_gz("e.pdb.gz", slurp(path("a.pdb.gz")))),
+             "e.pdb.gz' is gzip data that was packed twice");
 }
 
 TEST_F(IoTest, EveryCutGzipIsRefused) {
@@ -374,8 +376,6 @@ TEST_F(IoTest, AByteOrderMarkIsNoPartOfTheText) {
   EXPECT_HAS(input_error(write("b.pdb", mark + "<html><body>gone</body></html>")), "web page");
 }
 
-// ---- radii
-
 // As where PowerShell leads the output of another program to a file.
 TEST_F(IoTest, TextMayBeUtf16) {
   const std::string pdb = "REMARK \xe4\r\n" + pdb_atom(" N  ", ' ', "GLY", 'A', 1, 1, "N");
@@ -400,6 +400,8 @@ TEST_F(IoTest, TextMayBeUtf16) {
     EXPECT_HAS(input_error(write("b.pdb", wide(""))), "no atoms");
   }
 }
+
+// ---- radii
 
 float radius_of(const RadiusTable &table, int atomic_number) { return table.at(atomic_number); }
 
