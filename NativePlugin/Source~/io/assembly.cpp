@@ -46,7 +46,7 @@ std::vector<std::string> read_identifiers(const std::string &text, const std::st
     const size_t dash = part.find('-');
     int first = 0, last = 0;
     const bool is_range = dash != std::string::npos && parse_integer(part.substr(0, dash), first) &&
-                          parse_integer(part.substr(dash + 1), last);
+                          parse_integer(part.substr(dash + 1), last) && first <= last;
     const auto add = [&](std::string identifier) {
       if (identifiers.size() >= kMostOperators) fail_large(path, name);
       identifiers.push_back(std::move(identifier));

@@ -162,7 +162,7 @@ RawFile read_mmcif_text(const std::string &text, const std::string &path, int mo
       TableReader table(block, path, model);
       if (table.file.model_count != 0) return std::move(table.file);  // the first block with atoms is the structure
     }
-    return RawFile();
+    fail_input("'" + path + "' has no atoms: nowhere in it has _atom_site Cartn_x, Cartn_y and Cartn_z");
   } catch (const Error &) {
     throw;
   } catch (const std::bad_alloc &) {

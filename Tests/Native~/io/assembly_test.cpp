@@ -233,6 +233,7 @@ TEST(Assembly, Errors) {
   EXPECT_HAS(input("7"), "operation '7'");
   EXPECT_HAS(input("(1)(7)"), "operation '7'");
   EXPECT_HAS(input("P-3"), "operation 'P-3'");
+  EXPECT_HAS(input("3-1"), "operation '3-1'");
   EXPECT_HAS(input("(1-999999999)"), "more than");
   EXPECT_HAS(input("(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)(1,2,3)"),
              "more than");

@@ -82,5 +82,15 @@ TEST(Mmcif, InsertionCodesHaveAColumnOrAreBehindTheNumber) {
              "atom 2 of _atom_site: the residue number 'first'");
 }
 
+// As files of ligands, of small molecules and of reflections.
+TEST(Mmcif, FilesWithoutCoordinatesSayWhatIsMissing) {
+  for (const std::string text :
+       {"data_ATP\nloop_\n_chem_comp_atom.atom_id\n_chem_comp_atom.model_Cartn_x\nPG 1\n",
+        "data_x\nloop_\n_atom_site_label\n_atom_site_fract_x\nC1 0.5\n", "data_r1abcsf\n_cell.length_a 5\n",
+        "data_x\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n1 2 3\n"})
+    EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(text); }),
+               "'test.cif' has no atoms: nowhere in it has _atom_site Cartn_x, Cartn_y and Cartn_z");
+}
+
 }  // namespace
 }  // namespace quickses::io
