@@ -227,7 +227,10 @@ void add_once(std::vector<std::string> &names, const std::string &name) {
 }  // namespace
 
 Selection::Selection(std::string text) {
-  // It may have several lines, as where it comes from a file.
+  // It may have several lines, as where it comes from a file, and the blanks of web pages and word processors.
+  const std::string unbroken = "\xc2\xa0";
+  for (size_t at = text.find(unbroken); at != std::string::npos; at = text.find(unbroken, at))
+    text.replace(at, unbroken.size(), " ");
   std::replace_if(
       text.begin(), text.end(), [](char c) { return is_blank(c) || c == '\n'; }, ' ');
   text_ = trim(text);

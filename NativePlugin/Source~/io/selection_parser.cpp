@@ -121,7 +121,13 @@ class Parser {
     fail_usage("the selection '" + excerpt_of(text_) + "' can't be understood: " + what);
   }
   [[noreturn]] void fail_at(size_t place, const std::string &what) const {
-    fail(what + " (at character " + std::to_string(place + 1) + ")");
+    fail(what + " (at character " + number_of_character(place) + ")");
+  }
+
+  // Characters are counted from 1, and may have several bytes.
+  std::string number_of_character(size_t place) const {
+    const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+    return std::to_string(1 + std::count_if(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(place), begins));
   }
 
   static std::string quoted(std::string_view word) { return "'" + excerpt_of(word) + "'"; }
@@ -276,7 +282,7 @@ class Parser {
 
   [[noreturn]] void fail_unknown(std::string_view word, size_t place) const {
     const std::string nearest = nearest_selection_word(word), name = excerpt_of(word);
-    fail("'" + name + "' at character " + std::to_string(place + 1) + " is no word of selections; " +
+    fail("'" + name + "' at character " + number_of_character(place) + " is no word of selections; " +
          (nearest.empty() ? "is it a name, as in 'chain " + name + "' or 'resname " + name + "'?"
                           : "did you mean '" + nearest + "'?"));
   }

@@ -10,6 +10,7 @@
 #include "io/near_atoms.h"
 #include "io/nearest_word.h"
 #include "io/structure.h"
+#include "io/text.h"
 
 namespace quickses::io {
 namespace {
@@ -76,6 +77,8 @@ const Indices kAll = {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18
 TEST(SelectionWords, NameKindsOfResidues) {
   EXPECT_EQ(select("all"), kAll);
   EXPECT_EQ(select(" \t "), kAll);
+  EXPECT_EQ(select(u8"\u00a0\n"), kAll);
+  EXPECT_EQ(select(u8"not\u00a0\u00a0water\u00a0"), select("not water"));
   EXPECT_EQ(select("none"), Indices{});
   EXPECT_EQ(select("protein"), (Indices{1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13}));
   EXPECT_EQ(select("nucleic"), (Indices{14, 15, 16}));
@@ -245,7 +248,7 @@ TEST(SelectionWords, ErrorsPointAtTheWord) {
   const auto refused = [](const std::string &selection, std::initializer_list<const char *> parts) {
     SCOPED_TRACE(selection);
     const std::string message = error_of(ErrorKind::kUsage, [&] { kept_by(selection); });
-    EXPECT_HAS(message, "the selection '" + selection + "' can't be understood");
+    EXPECT_HAS(message, "the selection '" + excerpt_of(selection) + "' can't be understood");
     for (const char *part : parts) EXPECT_HAS(message, part);
     EXPECT_EQ(error_of(ErrorKind::kUsage, [&] { select(selection); }), message);
   };
@@ -282,6 +285,8 @@ TEST(SelectionWords, ErrorsPointAtTheWord) {
   refused("name 'CA CB'", {"without quotation marks", "character 6"});
   refused("chain A,\"B\"", {"without quotation marks"});
   refused("water and //[[", {"[["});
+  refused(u8"chain \u00c4 \u00d6 and protien", {"'protien' at character 15 "});  // not bytes
+  refused(u8"chain \u00c4 or (", {"'(' is not closed (at character 12)"});
   refused(std::string(2000, '(') + "all" + std::string(2000, ')'), {"in each other"});
   std::string nots;
   for (int k = 0; k < 1000; ++k) nots += "not ";
