@@ -37,6 +37,9 @@ void check_layout(const float *positions, size_t stride, size_t count) {
   if (count > 0x7fffffffu) invalid("count is " + std::to_string(count) + ": at most 2147483647 atoms are possible");
   if (stride != 0 && (stride < 12 || stride % 4 != 0))
     invalid("stride is " + std::to_string(stride) + ": it must be 0, or a multiple of 4 that is at least 12");
+  if (stride != 0 && count - 1 > static_cast<size_t>(PTRDIFF_MAX) / stride)
+    invalid("stride is " + std::to_string(stride) + ": no memory holds " + std::to_string(count) +
+            " positions that are so far apart");
 }
 
 namespace {

@@ -251,6 +251,9 @@ TEST_F(WithMesh, SetAtomsErrors) {
   expect_error(qses_set_atoms(nullptr, xyz, 0, r, 3), QSES_INVALID_ARGUMENT, {"context"});
   expect_error(qses_set_atoms(context_, nullptr, 0, r, 3), QSES_INVALID_ARGUMENT, {"positions", "NULL"});
   expect_error(qses_set_atoms(context_, xyz, 0, nullptr, 3), QSES_INVALID_ARGUMENT, {"radii", "NULL"});
+  for (size_t stride : {~size_t{0} - 3, ~size_t{0} / 4 + 1})  // the first is -4, which steps backwards
+    expect_error(qses_set_atoms(context_, xyz, stride, r, 3), QSES_INVALID_ARGUMENT,
+                 {"stride is", std::to_string(stride).c_str(), "3 positions"});
   for (size_t stride : {1u, 4u, 8u, 11u, 13u, 18u})
     expect_error(qses_set_atoms(context_, xyz, stride, r, 1), QSES_INVALID_ARGUMENT,
                  {"stride", std::to_string(stride).c_str()});
