@@ -2,10 +2,10 @@
 // A command for each of the structures that were given.
 #include "cli/each_input.h"
 
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 
+#include "cli/tell.h"
 #include "io/file_path.h"
 
 namespace quickses::cli {
@@ -55,7 +55,7 @@ size_t for_each_input(const Options &options, const std::function<void(const Opt
     } catch (...) {
       const Failure failure = failure_of(std::current_exception());
       if (failure.code() == kBackendUnavailable) throw;  // for all of them
-      std::fprintf(stderr, "quickses: %s failed: %s\n", input.c_str(), failure.what());
+      tell(input + " failed: " + failure.what());
       failed(one, failure);
       ++failed_count;
     }

@@ -2,10 +2,9 @@
 // The C API for the program: handles that free themselves, statuses as exceptions.
 #include "cli/engine.h"
 
-#include <cstdio>
-
 #include "cli/exit_code.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 
 namespace quickses::cli {
 namespace {
@@ -138,7 +137,7 @@ Engine start_engine(const ComputeOptions &options, int device, bool quiet) {
   constexpr bool has_cuda = false;
 #endif
   if (has_cuda && !quiet && options.backend == QSES_BACKEND_AUTO && engine.backend() == QSES_BACKEND_CPU)
-    std::fprintf(stderr, "quickses: the CPU computes: %s\n", engine.why_not_cuda().c_str());
+    tell("the CPU computes: " + engine.why_not_cuda());
   return engine;
 }
 

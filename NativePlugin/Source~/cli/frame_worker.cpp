@@ -3,7 +3,6 @@
 #include "cli/frame_worker.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "cli/clock.h"
 #include "cli/csv.h"
@@ -11,6 +10,7 @@
 #include "cli/measuring.h"
 #include "cli/report.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 #include "io/error.h"
 #include "io/text.h"
 
@@ -46,8 +46,8 @@ void check_atom_counts(const Options &options, const io::Structure &structure, c
 void unwrap(const Options &options, const io::Structure &structure, bool quiet, io::Trajectory &trajectory) {
   try {
     if (!trajectory.unwrap(structure.file_elements.data()) && !quiet)
-      std::fprintf(stderr, "quickses: warning: --unwrap: no frame of %s has a periodic box: all stay as they are\n",
-                   options.quoted_trajectories().c_str());
+      tell("warning: --unwrap: no frame of " + options.quoted_trajectories() +
+           " has a periodic box: all stay as they are");
   } catch (const io::Error &error) {
     throw io::Error(error.kind(), std::string("--unwrap: ") + error.what());
   }
@@ -80,8 +80,7 @@ FrameInputs::FrameInputs(const Options &given, bool quiet)
   for (const io::AtomInfo &atom : structure().atoms) file_indices.push_back(atom.file_index);
   if (!options.output.empty() && !makes_page(options)) pattern.emplace(options.output);
   if (!quiet)
-    for (const std::string &warning : trajectory.warnings())
-      std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
+    for (const std::string &warning : trajectory.warnings()) tell("warning: " + warning);
   if (options.unwrap) unwrap(options, structure(), quiet, trajectory);
 }
 

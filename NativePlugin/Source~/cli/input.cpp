@@ -3,12 +3,12 @@
 #include "cli/input.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "cli/area_tables.h"
 #include "cli/clock.h"
 #include "cli/exit_code.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 #include "cli/water_hint.h"
 #include "io/file_bytes.h"
 #include "io/radii.h"
@@ -34,15 +34,15 @@ void hint_at_number(const Options &options, const io::StructureFile &file) {
   const io::Structure &structure = file.models.front();
   if (!options.model_given || options.read.model == 0 || structure.model_name == std::to_string(structure.model))
     return;
-  std::fprintf(stderr, "quickses: '%s': --model %d is the model that the file gives the number %s\n", file.name.c_str(),
-               structure.model, structure.model_name.c_str());
+  tell("'" + file.name + "': --model " + std::to_string(structure.model) +
+       " is the model that the file gives the number " + structure.model_name);
 }
 
 // The frames of a trajectory are taken whatever models the structure has.
 void hint_at_models(const Options &options, const io::StructureFile &file) {
   if (file.model_count == 1 || options.model_given || !options.trajectories.empty()) return;
-  std::fprintf(stderr, "quickses: '%s': model 1 of %d is used%s; --model N chooses another\n", file.name.c_str(),
-               file.model_count, file.has_model_records ? "" : " (END and ENDMDL end a model)");
+  tell("'" + file.name + "': model 1 of " + std::to_string(file.model_count) + " is used" +
+       (file.has_model_records ? "" : " (END and ENDMDL end a model)") + "; --model N chooses another");
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ io::StructureFile load(const std::string &path, const Options &options, bool qui
     throw Failure(kUsage, "--radii: '" + file.name + "' has radii of its own");
   io::assign_radii(file, compute.radii_given ? compute.radii : "");
   if (!quiet)
-    for (const std::string &warning : file.warnings) std::fprintf(stderr, "quickses: warning: %s\n", warning.c_str());
+    for (const std::string &warning : file.warnings) tell("warning: " + warning);
   return file;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The quickses program: molecular surfaces from the command line: files are read and written by io/, surfaces computed
 // by the C API.
-#include <cstdio>
 #include <iostream>
 
 #include "cli/commands.h"
@@ -9,6 +8,7 @@
 #include "cli/options.h"
 #include "cli/processes.h"
 #include "cli/stopping.h"
+#include "cli/tell.h"
 #include "cli/text_output.h"
 #include "cli/utf8.h"
 #include "io/file_bytes.h"
@@ -41,7 +41,7 @@ int run(int argc, char **argv) {
     return kOk;
   } catch (...) {
     const Failure failure = failure_of(std::current_exception());
-    if (!processes || processes->is_first()) std::fprintf(stderr, "quickses: %s\n", failure.what());
+    if (!processes || processes->is_first()) tell(failure.what());
     return failure.code();
   }
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <numeric>
@@ -13,6 +12,7 @@
 #include "cli/mesh_check.h"
 #include "cli/processes.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 #include "io/atomic_file.h"
 #include "io/color_borders.h"
 #include "io/file_path.h"
@@ -252,11 +252,9 @@ std::unique_ptr<render::Page> MeshOutput::begin_page(const std::string &path) co
 
 void hint_at_size(const render::Page &page, const Options &options) {
   if (options.quiet || page.size() < render::Page::kManyBytes) return;
-  std::fprintf(stderr,
-               "quickses: the page has %llu MB, for which browsers need some time: a larger --spacing%s makes it "
-               "smaller\n",
-               static_cast<unsigned long long>(page.size() / 1'000'000),
-               options.trajectories.empty() ? "" : ", or fewer --frames,");
+  tell("the page has " + std::to_string(page.size() / 1'000'000) +
+       " MB, for which browsers need some time: a larger --spacing" +
+       (options.trajectories.empty() ? "" : ", or fewer --frames,") + " makes it smaller");
 }
 
 void check_mesh_writable(const std::string &path) {

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <climits>
-#include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
 #include "cli/processes.h"
+#include "cli/tell.h"
 
 #if defined(__linux__)
 #include <sched.h>
@@ -59,7 +59,7 @@ FrameResult unpack(const std::vector<uint8_t> &bytes) {
 // Of a process that can't go on: the frames it has would be missing for ever, and others wait for its answers.
 void abort_all(std::exception_ptr why) {
   const Failure failure = failure_of(why);
-  std::fprintf(stderr, "quickses: %s\n", failure.what());
+  tell(failure.what());
   MPI_Abort(MPI_COMM_WORLD, failure.code());
 }
 

@@ -16,6 +16,7 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
 #include "io/file_path.h"
@@ -37,7 +38,9 @@ std::string output_of_model(const Options &options, int model) {
 // Of a mesh without a triangle.
 void say_why_empty(const Options &options) {
   const auto say = [&](const char *why, double value) {
-    std::fprintf(stderr, "quickses: '%s': there is no surface: %s %g\n", options.input.c_str(), why, value);
+    char number[40];
+    std::snprintf(number, sizeof number, "%g", value);
+    tell("'" + options.input + "': there is no surface: " + why + " " + number);
   };
   if (options.compute.surface == QSES_SURFACE_GAUSSIAN)
     say("the density is nowhere as high as --isovalue", options.compute.isovalue);

@@ -16,6 +16,7 @@
 #include "cli/frame_worker.h"
 #include "cli/progress.h"
 #include "cli/shown_output.h"
+#include "cli/tell.h"
 #include "cli/text_output.h"
 #include "cli/used_files.h"
 #include "io/error.h"
@@ -91,8 +92,7 @@ class ResultWriter {
     areas_.write({result.per_atom, result.per_residue});
     if (!result.error.empty() && ++failed_ <= kMostMessages) {
       progress_.clear();
-      std::fprintf(stderr, "quickses: frame %llu failed: %s\n", static_cast<unsigned long long>(result.frame),
-                   result.error.c_str());
+      tell("frame " + std::to_string(result.frame) + " failed: " + result.error);
     }
     progress_.advance();
   }
@@ -100,10 +100,9 @@ class ResultWriter {
   void finish() {
     progress_.clear();
     if (failed_ > kMostMessages)
-      std::fprintf(
-          stderr, "quickses: %s not shown\n",
-          io::counted(failed_ - kMostMessages, "more message of failed frames is", "more messages of failed frames are")
-              .c_str());
+      tell(io::counted(failed_ - kMostMessages, "more message of failed frames is",
+                       "more messages of failed frames are") +
+           " not shown");
     csv_.finish();
     json_.finish();
     areas_.finish();
@@ -128,7 +127,7 @@ class ResultWriter {
     } catch (const io::Error &error) {
       if (options_.csv.empty() && options_.json.empty() && !options_.wants_areas()) throw;
       progress_.clear();
-      std::fprintf(stderr, "quickses: %s; the rest is done without it\n", error.what());
+      tell(std::string(error.what()) + "; the rest is done without it");
       page_.reset();
     }
   }

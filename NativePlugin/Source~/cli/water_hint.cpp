@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/water_hint.h"
 
-#include <cstdio>
-
+#include "cli/tell.h"
 #include "io/text.h"
 
 namespace quickses::cli {
@@ -15,9 +14,8 @@ void hint_at_water(const Options &options, const io::Structure &structure) {
   for (size_t i = 0; i < residues.size(); ++i)
     if (structure.atoms[i].is_water() && (i == 0 || residues[i] != residues[i - 1])) ++molecules;
   if (molecules != 0)
-    std::fprintf(stderr, "quickses: %s part of the surface; --no-water leaves %s out\n",
-                 io::counted(molecules, "water molecule is", "water molecules are").c_str(),
-                 molecules == 1 ? "it" : "them");
+    tell(io::counted(molecules, "water molecule is", "water molecules are") +
+         " part of the surface; --no-water leaves " + (molecules == 1 ? "it" : "them") + " out");
 }
 
 }  // namespace quickses::cli

@@ -265,6 +265,22 @@ class Names(FilesTest):
                     if made.name not in ("Krambin ü.pdb", "Läufe.pdb", "rädii.txt"):
                         made.unlink()
 
+    @unittest.skipIf(IS_WINDOWS, "names have no such letters there")
+    def test_they_neither_begin_lines_nor_steer_the_terminal(self):
+        name = "two\nlines \x1b[31m.pdb"
+        atoms = "".join(line for line in CRAMBIN.read_text().splitlines(True) if line.startswith("ATOM"))
+        self.write(name, (atoms.replace("           C", "            ") + "END\n") * 2 + "HETATM" + atoms[6:81])
+        shown = "two?lines ?[31m.pdb"
+        said = self.run_cpu("measure", name, "--model", "all").stderr + self.run_cpu(name, "-v", "2").stderr
+        said += self.run_cpu(name, name, "nowhere" + name, "-v", "2", code=6).stderr
+        said += self.run_cpu(name, "-v", "2", "--view", "x\ny", "-o", "a.png", code=USAGE).stderr
+        self.assertGreater(said.count(f"'{shown}'"), 3)
+        self.assertIn(f"quickses: nowhere{shown} failed: 'nowhere{shown}': no such file\n", said)
+        self.assertIn("quickses: --view: 'x?y' is no direction", said)
+        for line in said.splitlines():
+            self.assertTrue(line.startswith("quickses: "), line)
+        self.assertNotIn("\x1b", said)
+
     def test_wildcards(self):
         """Windows' shells leave them to programs; elsewhere they are letters of a name like others."""
         (self.folder / "in").mkdir()
