@@ -16,6 +16,7 @@
 namespace quickses {
 
 inline std::string describe_bytes(uint64_t bytes) {
+  if (bytes < 1024) return std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes");
   char text[32];
   const double value = static_cast<double>(bytes);
   if (value >= 1024.0 * 1024.0 * 1024.0)

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 import cli_test
-from cli_test import CRAMBIN, INPUT, USAGE, ProgramTest, program_to_test
+from cli_test import COMPUTE, CRAMBIN, INPUT, USAGE, ProgramTest, program_to_test
 from trajectory_files import chain_of, dcd_bytes, pdb_text
 
 COMMANDS = ("", "measure", "cavities", "bench")
@@ -146,6 +146,8 @@ class Hints(ProgramTest):
                           self.write("two.dcd", dcd_bytes([positions])).name, "--csv", "a.csv", "--backend", "cpu")
         self.assertRegex(self.run_cpu(*frames, "--memory", "1K", "--csv", "b.csv", code=6).stderr, "1 of 1 frame failed\n$")
         self.assert_fails(INPUT, ["'one.pdb' has more than 1 byte,"], "one.pdb", "--max-input", "1")
+        for size, words in (("1", "1 byte"), ("1023", "1023 bytes"), ("1K", "1.0 KiB")):
+            self.assert_fails(COMPUTE, [f"the memory budget of {words} does not suffice"], "one.pdb", "--memory", size)
 
     def test_cuda_is_not_spoken_of_where_it_was_not_built(self):
         refused = subprocess.run([cli_test.PROGRAM, CRAMBIN, "--backend", "cuda"], capture_output=True, encoding="utf-8",
