@@ -3,8 +3,7 @@
 #pragma once
 
 #include "capi/barrier.h"
-#include "io/text.h"
-
+#include "capi/structs.h"
 #include "jobs/surface_job.h"
 #include "parallel/cpu_threads.h"
 
@@ -40,8 +39,7 @@ inline void require_atoms(const qses_context &context, const char *function) {
 
 inline void check_atom_count(const qses_context &context, size_t count, const char *function) {
   require_atoms(context, function);
-  if (count != context.atoms->count)
-    invalid("count is " + std::to_string(count) + " but the context has " + io::counted(context.atoms->count, "atom"));
+  check_atom_count(count, context.atoms->count, "context");
 }
 
 }  // namespace quickses

@@ -17,6 +17,12 @@
 
 namespace quickses {
 
+// Of a caller's array. whole: whose atoms it is about.
+inline void check_atom_count(size_t count, size_t atoms, const char *whole) {
+  if (count != atoms)
+    invalid("count is " + std::to_string(count) + " but the " + whole + " has " + io::counted(atoms, "atom"));
+}
+
 // Structures with a struct_size: callers may have been compiled with an older header or a newer one, so what they hand
 // over may be shorter or longer than ours. No byte behind struct_size is looked at or touched.
 

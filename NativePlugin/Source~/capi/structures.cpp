@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+using quickses::check_atom_count;
 using quickses::check_choice;
 using quickses::guarded;
 using quickses::invalid;
@@ -39,12 +40,6 @@ constexpr qses_structure_format kFormats[] = {QSES_STRUCTURE_PDB, QSES_STRUCTURE
                                               QSES_STRUCTURE_XYZR, QSES_STRUCTURE_GRO};
 constexpr qses_color_scheme kSchemes[] = {QSES_COLOR_UNIFORM, QSES_COLOR_ELEMENT,        QSES_COLOR_CHAIN,
                                           QSES_COLOR_RESIDUE, QSES_COLOR_HYDROPHOBICITY, QSES_COLOR_SEQUENCE};
-
-// count: of a caller's array of atoms.
-void check_atom_count(const io::Structure &model, size_t count) {
-  if (count != model.atoms.size())
-    invalid("count is " + std::to_string(count) + " but the structure has " + io::counted(model.atoms.size(), "atom"));
-}
 
 io::ReadOptions read_options_of(const qses_structure_options &options) {
   check_choice("options.format", options.format, QSES_STRUCTURE_GRO);
@@ -160,7 +155,7 @@ qses_status qses_structure_select(const qses_structure *structure, const char *s
     require(selection, "selection");
     require(mask, "mask");
     const io::Structure &model = structure->model();
-    check_atom_count(model, count);
+    check_atom_count(count, model.atoms.size(), "structure");
     const uint32_t found = io::select_atoms(model, selection, mask);
     if (selected) *selected = found;
   });
@@ -174,7 +169,7 @@ qses_status qses_structure_colors(const qses_structure *structure, qses_color_sc
     require(rgba, "rgba");
     check_choice("scheme", scheme, QSES_COLOR_SEQUENCE);
     const io::ColorScheme chosen = *own_choice<io::ColorScheme>(kSchemes, scheme);
-    check_atom_count(structure->model(), count);
+    check_atom_count(count, structure->model().atoms.size(), "structure");
     const io::Rgba uniform = {uniform_rgba[0], uniform_rgba[1], uniform_rgba[2], uniform_rgba[3]};
     io::color_atoms(structure->model(), chosen, uniform, rgba);
   });

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+using quickses::check_atom_count;
 using quickses::check_choice;
 using quickses::guarded;
 using quickses::invalid;
@@ -36,12 +37,6 @@ constexpr qses_trajectory_format kFormats[] = {QSES_TRAJECTORY_DCD, QSES_TRAJECT
 std::optional<io::TrajectoryFormat> format_of(const qses_trajectory_format &format) {
   check_choice("format", format, QSES_TRAJECTORY_NETCDF);
   return own_choice<io::TrajectoryFormat>(kFormats, format);
-}
-
-void check_atom_count(const qses_trajectory &trajectory, size_t count) {
-  if (count != trajectory.frames.atom_count())
-    invalid("count is " + std::to_string(count) + " but the trajectory has " +
-            io::counted(trajectory.frames.atom_count(), "atom"));
 }
 
 }  // namespace
@@ -102,7 +97,7 @@ qses_status qses_trajectory_unwrap(qses_trajectory *trajectory, const uint8_t *e
   return guarded([&] {
     require(trajectory, "trajectory");
     require(elements, "elements");
-    check_atom_count(*trajectory, count);
+    check_atom_count(count, trajectory->frames.atom_count(), "trajectory");
     if (!trajectory->frames.unwrap(elements))
       throw quickses::Error(QSES_NO_BOX, "no frame has a periodic box: molecules are left as they are");
   });
@@ -113,7 +108,7 @@ qses_status qses_trajectory_read_frame(const qses_trajectory *trajectory, uint64
   return guarded([&] {
     require(trajectory, "trajectory");
     quickses::check_layout(positions, stride, count);
-    check_atom_count(*trajectory, count);
+    check_atom_count(count, trajectory->frames.atom_count(), "trajectory");
     if (frame) quickses::check_struct(frame, "qses_frame");
     if (index >= trajectory->frames.frame_count())
       invalid("index is " + std::to_string(index) + " but the trajectory has " +
