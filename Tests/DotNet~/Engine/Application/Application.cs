@@ -5,6 +5,12 @@ using System.IO;
 
 namespace UnityEngine
 {
+    public enum RuntimePlatform
+    {
+        LinuxPlayer = 13,
+        LinuxEditor = 16
+    }
+
     /// <summary>The driver says what it answers.</summary>
     public class Application
     {
@@ -18,8 +24,13 @@ namespace UnityEngine
 
         public static event Action quitting;
 
-        /// <summary>The double is a player, but for <see cref="isPlaying"/>.</summary>
-        public static bool isEditor => false;
+        /// <summary>The double is a player, but for <see cref="isPlaying"/>, unless it has an Editor.</summary>
+        public static bool isEditor { get; internal set; }
+
+        public static RuntimePlatform platform =>
+            isEditor ? RuntimePlatform.LinuxEditor : RuntimePlatform.LinuxPlayer;
+
+        public static string temporaryCachePath => Path.GetTempPath();
 
         public static string unityVersion => "2021.3.0f1";
 

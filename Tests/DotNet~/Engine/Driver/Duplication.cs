@@ -20,6 +20,7 @@ namespace QuickSes.EngineDouble
 
         private readonly Dictionary<Object, Object> _copies = new Dictionary<Object, Object>();
         private readonly List<MonoBehaviour> _scripts = new List<MonoBehaviour>();
+        private bool _isForFile;
 
         /// <summary>The copy of a GameObject, or of a component with its GameObject, after its scripts woke.</summary>
         public static Object Run(Object original, Transform parent, bool worldPositionStays)
@@ -42,6 +43,28 @@ namespace QuickSes.EngineDouble
             return result != null ? result : throw new UnityException("Instantiate failed because the clone was " +
                 "destroyed during creation. This can happen if DestroyImmediate is called in MonoBehaviour.Awake.");
         }
+
+        /// <summary>
+        /// The copy of a GameObject that goes into a file: it is told nothing, and has no references to what is in none.
+        /// </summary>
+        public static GameObject ForFile(GameObject root)
+        {
+            var duplication = new Duplication { _isForFile = true };
+            GameObject copy = duplication.CopyObjects(root, null);
+            foreach (KeyValuePair<Object, Object> pair in duplication._copies)
+            {
+                pair.Value.IsPersistent = true;
+                if (pair.Key is Component component)
+                    duplication.CopyState(component, (Component)pair.Value);
+                if (pair.Value is Component copied)
+                    copied.DropReferences(each => !each.IsPersistent);
+            }
+
+            return copy;
+        }
+
+        /// <summary>What is serialised of an object of the same type, with the same references.</summary>
+        public static void CopyFields(Object from, Object to) => new Duplication().CopyFields(from, to, from.GetType());
 
         private GameObject CopyObjects(GameObject original, Transform parent)
         {
@@ -69,7 +92,7 @@ namespace QuickSes.EngineDouble
 
         private void CopyFields(object from, object to, Type type)
         {
-            for (; type != typeof(MonoBehaviour) && type != typeof(object) && type != typeof(ValueType);
+            for (; type != typeof(MonoBehaviour) && type != typeof(ScriptableObject) && type != typeof(object) && type != typeof(ValueType);
                 type = type.BaseType)
             {
                 if (!typeof(Object).IsAssignableFrom(type) && !type.IsDefined(typeof(SerializableAttribute), false))
@@ -107,7 +130,9 @@ namespace QuickSes.EngineDouble
         {
             if (value == null)
                 return null;
-            return _copies.TryGetValue(value, out Object copy) ? copy : value;
+            if (_copies.TryGetValue(value, out Object copy))
+                return copy;
+            return _isForFile && !value.IsPersistent ? null : value;
         }
 
         private IList CopyOfElements(IList from, IList to, Type type)

@@ -24,6 +24,12 @@ namespace QuickSes.EngineDouble
         /// <summary>Where Animators and Timelines move things in a frame: after Update, before LateUpdate.</summary>
         public static event Action Animating;
 
+        /// <summary>At each <see cref="Reset"/>.</summary>
+        internal static event Action Resetting;
+
+        /// <summary>The Editor's part of a frame, if there is an Editor: whether scripts run in it.</summary>
+        internal static Func<bool> BeginFrame { get; set; }
+
         /// <summary>Whether each frame ends with <see cref="MeshCheck"/> on the meshes that changed.</summary>
         public static bool ChecksMeshes { get; set; } = true;
 
@@ -47,6 +53,7 @@ namespace QuickSes.EngineDouble
         public static void Reset()
         {
             EngineThread.Adopt();
+            Resetting?.Invoke();
             DestroyScene();
             RenderThread.Reset();
             Coroutine.Reset();
@@ -81,6 +88,8 @@ namespace QuickSes.EngineDouble
         public static void Frame(double seconds)
         {
             EngineThread.Require("Engine.Frame");
+            if (BeginFrame?.Invoke() == false)
+                return;
             Time.Advance(seconds);
             Lifecycle.StartPending();
             Lifecycle.Broadcast(Message.Update);
@@ -223,7 +232,8 @@ namespace QuickSes.EngineDouble
             {
                 GameObject root = null;
                 foreach (Object item in ObjectRegistry.Objects)
-                    if (root is null && item is GameObject gameObject && gameObject.transform.parent == null)
+                    if (root is null && item is GameObject gameObject && !gameObject.IsPersistent &&
+                        gameObject.transform.parent == null)
                         root = gameObject;
                 if (root is null)
                     return;

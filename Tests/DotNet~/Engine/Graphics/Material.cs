@@ -23,6 +23,30 @@ namespace UnityEngine
     {
         private readonly HashSet<int> _properties = new HashSet<int>();
 
+        public Material()
+        {
+        }
+
+        public Material(Material source)
+        {
+            name = source.name;
+            hideFlags = source.hideFlags;
+            shader = source.shader;
+            CopyPropertiesFromMaterial(source);
+        }
+
+        public Shader shader { get; set; }
+
+        public Color color { get; set; } = Color.white;
+
+        /// <summary>Not the shader.</summary>
+        public void CopyPropertiesFromMaterial(Material mat)
+        {
+            RequireAlive("CopyPropertiesFromMaterial");
+            color = mat.color;
+            _properties.UnionWith(mat._properties);
+        }
+
         /// <summary>What the shader of the material has; only in the double.</summary>
         public Material DeclareProperty(string name)
         {

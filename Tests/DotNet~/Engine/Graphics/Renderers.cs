@@ -21,6 +21,12 @@ namespace UnityEngine
             }
         }
 
+        internal override void DropReferences(Predicate<Object> isDropped)
+        {
+            if (_mesh != null && isDropped(_mesh))
+                _mesh = null;
+        }
+
         // The same mesh, which therefore is nobody's instance.
         internal override void CopyStateOf(Component original) => _mesh = ((MeshFilter)original)._mesh;
     }
@@ -46,6 +52,25 @@ namespace UnityEngine
                 _materials[0] = value;
             }
         }
+
+        /// <summary>A copy.</summary>
+        public Material[] sharedMaterials
+        {
+            get
+            {
+                RequireAlive("get_sharedMaterials");
+                return (Material[])_materials.Clone();
+            }
+            set
+            {
+                RequireAlive("set_sharedMaterials");
+                _materials = (Material[])value.Clone();
+            }
+        }
+
+        public bool enabled { get; set; } = true;
+
+        public bool receiveShadows { get; set; } = true;
 
         /// <summary>
         /// Those that were set; else those of the mesh of a filter beside it, if there is one.
@@ -94,9 +119,20 @@ namespace UnityEngine
             properties.CopyFrom(_block);
         }
 
+        internal override void DropReferences(Predicate<Object> isDropped)
+        {
+            for (int k = 0; k < _materials.Length; ++k)
+                if (_materials[k] != null && isDropped(_materials[k]))
+                    _materials[k] = null;
+        }
+
         // Property blocks are not copied along.
-        internal override void CopyStateOf(Component original) =>
-            _materials = (Material[])((Renderer)original)._materials.Clone();
+        internal override void CopyStateOf(Component original)
+        {
+            var other = (Renderer)original;
+            _materials = (Material[])other._materials.Clone();
+            (enabled, receiveShadows) = (other.enabled, other.receiveShadows);
+        }
     }
 
     public class MeshRenderer : Renderer

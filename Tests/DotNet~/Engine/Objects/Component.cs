@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+using System;
 
 namespace UnityEngine
 {
@@ -40,6 +41,11 @@ namespace UnityEngine
 
         /// <summary>Takes what the engine itself serialises of a component of the same type.</summary>
         internal virtual void CopyStateOf(Component original)
+        {
+        }
+
+        /// <summary>Forgets objects that the engine itself serialises a reference to.</summary>
+        internal virtual void DropReferences(Predicate<Object> isDropped)
         {
         }
 

@@ -2,9 +2,21 @@
 using QuickSes.EngineDouble;
 using System;
 using System.Collections.Generic;
+using System.Linq;
+using UnityEngine.SceneManagement;
 
 namespace UnityEngine
 {
+    public enum PrimitiveType
+    {
+        Sphere,
+        Capsule,
+        Cylinder,
+        Cube,
+        Plane,
+        Quad
+    }
+
     public sealed class GameObject : Object
     {
         private readonly List<Component> _components = new List<Component>();
@@ -41,6 +53,18 @@ namespace UnityEngine
         }
 
         public string tag { get; set; } = "Untagged";
+
+        public int layer { get; set; }
+
+        /// <summary>Not valid: it is in none, but an asset or a prefab that is open for editing.</summary>
+        public Scene scene
+        {
+            get
+            {
+                RequireAlive("get_scene");
+                return IsPersistent || _transform.Root.IsInPrefabStage ? default : SceneManager.GetActiveScene();
+            }
+        }
 
         public bool activeSelf => _activeSelf;
 
@@ -102,6 +126,36 @@ namespace UnityEngine
             return component;
         }
 
+        public T[] GetComponents<T>()
+        {
+            RequireAlive("GetComponents");
+            return _components.OfType<T>().ToArray();
+        }
+
+        /// <summary>Its own, or else that of the first child that has one, or one below it.</summary>
+        public T GetComponentInChildren<T>(bool includeInactive)
+        {
+            if ((includeInactive || activeInHierarchy) && TryGetComponent(out T own))
+                return own;
+            for (int i = 0; i < transform.childCount; ++i)
+            {
+                T found = transform.GetChild(i).Owner.GetComponentInChildren<T>(includeInactive);
+                if (found != null)
+                    return found;
+            }
+
+            return default;
+        }
+
+        /// <summary>Of the double, without a collider, and all with the same mesh.</summary>
+        public static GameObject CreatePrimitive(PrimitiveType type)
+        {
+            var made = new GameObject(type.ToString(), typeof(MeshFilter), typeof(MeshRenderer));
+            made.GetComponent<MeshFilter>().sharedMesh = Resources.BuiltinMesh;
+            made.GetComponent<MeshRenderer>().sharedMaterial = Resources.BuiltinMaterial;
+            return made;
+        }
+
         public bool TryGetComponent<T>(out T component)
         {
             RequireAlive("TryGetComponent");
@@ -128,7 +182,10 @@ namespace UnityEngine
         /// <summary>Components of the same types, still as new, of which none was told anything; no children.</summary>
         internal static GameObject CopyOf(GameObject original)
         {
-            var copy = new GameObject(original.name) { tag = original.tag, hideFlags = original.hideFlags };
+            var copy = new GameObject(original.name)
+            {
+                tag = original.tag, layer = original.layer, hideFlags = original.hideFlags
+            };
             copy._activeSelf = original._activeSelf;
             for (int i = 1; i < original._components.Count; ++i) // the first is the Transform
                 copy.Append((Component)Activator.CreateInstance(original._components[i].GetType(), true));

@@ -28,6 +28,9 @@ namespace UnityEngine
 
         internal bool IsDestructionPending { get; set; }
 
+        /// <summary>Whether it is in a file of the project, and in no scene.</summary>
+        internal bool IsPersistent { get; set; }
+
         public string name
         {
             get
@@ -56,10 +59,12 @@ namespace UnityEngine
             }
         }
 
+        public int GetInstanceID() => _instanceId;
+
         public static void Destroy(Object obj)
         {
             EngineThread.Require("Destroy");
-            if (obj == null)
+            if (obj == null || RefusesToDestroy(obj))
                 return;
             if (!Application.isPlaying)
                 Debug.LogError("Destroy may not be called from edit mode! Use DestroyImmediate instead.");
@@ -70,7 +75,7 @@ namespace UnityEngine
         public static void DestroyImmediate(Object obj)
         {
             EngineThread.Require("DestroyImmediate");
-            if (obj != null && obj.MayBeDestroyed())
+            if (obj != null && !RefusesToDestroy(obj) && obj.MayBeDestroyed())
                 obj.DestroyNow();
         }
 
@@ -113,6 +118,13 @@ namespace UnityEngine
 
         /// <summary>False, with an error in the log, for a component that another one requires.</summary>
         internal virtual bool MayBeDestroyed() => true;
+
+        private static bool RefusesToDestroy(Object obj)
+        {
+            if (obj.IsPersistent)
+                Debug.LogError("Destroying assets is not permitted to avoid data loss.");
+            return obj.IsPersistent;
+        }
 
         /// <summary>The last moment at which the object is alive.</summary>
         internal virtual void OnDestroying()

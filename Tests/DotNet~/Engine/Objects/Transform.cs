@@ -18,6 +18,8 @@ namespace UnityEngine
 
         internal GameObject ParentObject => _parent?.Owner;
 
+        internal GameObject Root => _parent is null ? Owner : _parent.Root;
+
         public Transform parent
         {
             get
