@@ -53,14 +53,6 @@ namespace QuickSes.Tests
         }
 
         [Test]
-        public void TheWindowOpens()
-        {
-            Assert.That(EditorApplication.ExecuteMenuItem(MolecularMenu.FromFile), Is.True);
-            Assert.That(EditorWindow.HasOpenInstances<SurfaceFromFileWindow>(), Is.True);
-            EditorWindow.GetWindow<SurfaceFromFileWindow>().Close();
-        }
-
-        [Test]
         public void ASurfaceOfAFileHasItsNameAndACopyOfTheSource()
         {
             var source = new MoleculeSource { SkipHydrogen = true, Selection = "//A" };

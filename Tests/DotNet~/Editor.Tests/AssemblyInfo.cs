@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+using QuickSes.EngineDouble;
+
+[assembly: EditorTest]
