@@ -340,6 +340,10 @@ namespace QuickSes.Tests
                 Assert.That(visible[_rig.Surface.OwnerAtomAt(vertex)]);
             Assert.That(copy.triangles, Is.Not.Empty);
             Assert.That(copy.HasVertexAttribute(VertexAttribute.TexCoord7), Is.False);
+            int vertices = copy.vertexCount;
+            copy.UploadMeshData(true);
+            Assert.That(() => _rig.Surface.CopyTo(copy), Throws.InvalidOperationException);
+            Assert.That(copy.vertexCount, Is.EqualTo(vertices), "what can't be replaced stays");
             UnityEngine.Object.DestroyImmediate(copy);
         }
 

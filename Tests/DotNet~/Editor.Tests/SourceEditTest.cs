@@ -53,6 +53,17 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ToolsThatWaitForTheSurfaceGetThatOfWhatWasEditedJustNow()
+        {
+            ReadFile();
+            _surface.Source.SkipWater = false;
+            Inspector.Validate(_surface);
+            Assert.That(_surface.ComputeNow(), Is.True);
+            Assert.That(_surface.AtomCount, Is.EqualTo(2));
+            Assert.That(_surface.CurrentLevel.IsOfNewestAtoms, Is.True);
+        }
+
+        [Test]
         public void ASourceThatIsTakenAwayTakesTheAtomsAlong()
         {
             ReadFile();

@@ -92,11 +92,15 @@ namespace QuickSes.Tests
             Assert.That(rig.Surface.ComputeWhile(() => ++looks < 3), Is.False);
             Assert.That(looks, Is.EqualTo(3));
             Assert.That(rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Cancelled));
+            Assert.That(rig.Failures, Is.Empty, "who stops it is told already");
+            Assert.That(rig.Surface.IsBusy, "its own surface still comes");
             Assert.That(NativeGate.Open(), Is.EqualTo(0));
+            yield return rig.Settle();
+            Assert.That(rig.Surface.CurrentLevel.IsFinest);
+            Assert.That(rig.Surface.LastError.Status, Is.EqualTo(QuickSesStatus.Ok));
             Assert.That(rig.Surface.ComputeWhile(() => true), Is.True);
             Assert.That(rig.Surface.CurrentLevel.IsFinest);
             rig.Dispose();
-            yield return null;
         }
     }
 }

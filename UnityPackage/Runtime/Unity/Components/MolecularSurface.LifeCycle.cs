@@ -76,11 +76,7 @@ namespace QuickSes
         // handlers, which may do anything.
         private void LateUpdate()
         {
-            if (_isEdited)
-            {
-                _isEdited = false;
-                FollowEdits();
-            }
+            FollowEditsNow();
             if (IsAlive && _asksForAtoms)
             {
                 _asksForAtoms = false;
@@ -166,6 +162,15 @@ namespace QuickSes
         {
             _isEdited = true;
             QueueEditorUpdate();
+        }
+
+        /// <summary>What was edited since the last frame counts from now on.</summary>
+        internal void FollowEditsNow()
+        {
+            if (!_isEdited)
+                return;
+            _isEdited = false;
+            FollowEdits();
         }
 
         // The inspector, Undo and changed prefabs write serialised fields, also that of the filter beside this

@@ -252,14 +252,22 @@ namespace QuickSes
         /// <param name="goesOn">If not null: called now and then; false ends it.</param>
         internal bool ComputeWhile(Func<bool> goesOn)
         {
+            FollowEditsNow();
             if (!LoadSourceUnlessFed())
                 return false;
             if (!Session.Atoms.IsSet)
                 throw new InvalidOperationException("There are no atoms: call SetAtoms or choose a source.");
             bool isComputed = Session.ComputeNow(goesOn);
+            QueueEditorUpdate(); // in which what was cancelled goes on
             Session.RaiseEvents();
             return isComputed;
         }
+
+        /// <summary>Whether <see cref="ComputeNow"/> would give what is shown, as far as is known.</summary>
+        internal bool IsFinestShown => !_isEdited && !IsLoading && Session.IsFinestShown;
+
+        /// <summary>Whether triangles of what is shown are visible: not all are of hidden atoms.</summary>
+        internal bool IsAnyVisible => Shown.IsAnyVisible;
 
         // Colours, what is hidden, texture coordinates: nothing is computed, and the next frame sees it.
         private void LookChanged() => QueueEditorUpdate();

@@ -65,6 +65,14 @@ namespace QuickSes
             IsIntact(mesh) && _layout == style.Layout && Suffices(_vertexCapacity, vertices, withRoom) &&
             Suffices(_indexCapacity, indices, withRoom);
 
+        /// <summary>Throws if a mesh can't be written to.</summary>
+        public static void RequireWritable(Mesh mesh)
+        {
+            if (!mesh.isReadable)
+                throw new InvalidOperationException(
+                    $"The mesh '{mesh.name}' can't be written to: it was made unreadable (UploadMeshData).");
+        }
+
         /// <summary>Gives a mesh the buffers it needs. Throws if it can't be written to.</summary>
         /// <param name="mesh">Readable (its default).</param>
         /// <param name="style">Of the vertices.</param>
@@ -76,9 +84,7 @@ namespace QuickSes
         /// </param>
         public void Reserve(Mesh mesh, MeshStyle style, int vertices, int indices, bool withRoom)
         {
-            if (!mesh.isReadable)
-                throw new InvalidOperationException(
-                    $"The mesh '{mesh.name}' can't be written to: it was made unreadable (UploadMeshData).");
+            RequireWritable(mesh);
             using (s_marker.Auto())
             {
                 VertexAttributeDescriptor[] layout = style.Layout;

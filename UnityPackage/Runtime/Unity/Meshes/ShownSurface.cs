@@ -154,16 +154,15 @@ namespace QuickSes
         /// </summary>
         public unsafe void CopyTo(Mesh mesh)
         {
+            MeshWriter.RequireWritable(mesh);
             SurfaceMeshView view = View;
-            int vertices = view.VertexCount, triangles = view.TriangleCount;
+            int vertices = view.VertexCount;
             mesh.Clear();
             using (var writer = new MeshWriter())
             using (var room = new UnmanagedBuffer<byte>())
             using (var indices = new UnmanagedBuffer<uint>())
             {
-                view.Indices.CopyTo(indices.Resize(3 * triangles));
-                if (IsFilled && !Look.Visible.IsEmpty)
-                    triangles = _kept.Filter(Look.Visible, 0, triangles, indices.Span);
+                int triangles = CopyVisible(view, indices);
                 MeshStyle style = IsFilled ? StyleOf(view, Look, false) : default;
                 writer.Reserve(mesh, style, vertices, 3 * triangles, false);
                 if (vertices > 0)
@@ -178,6 +177,25 @@ namespace QuickSes
                     writer.WriteIndices(indices.Pointer, 0, 3 * triangles);
                 writer.Finish(SurfaceMeshUploader.BoundsOf(view), vertices, 3 * triangles);
             }
+        }
+
+        /// <summary>Whether not all triangles of what is shown are hidden, and there are some.</summary>
+        public bool IsAnyVisible
+        {
+            get
+            {
+                using (var indices = new UnmanagedBuffer<uint>())
+                    return CopyVisible(View, indices) > 0;
+            }
+        }
+
+        // How many triangles there are.
+        private int CopyVisible(in SurfaceMeshView view, UnmanagedBuffer<uint> indices)
+        {
+            view.Indices.CopyTo(indices.Resize(3 * view.TriangleCount));
+            return IsFilled && !Look.Visible.IsEmpty
+                ? _kept.Filter(Look.Visible, 0, view.TriangleCount, indices.Span)
+                : view.TriangleCount;
         }
 
         public void Dispose()

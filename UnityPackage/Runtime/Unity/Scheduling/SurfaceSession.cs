@@ -72,6 +72,10 @@ namespace QuickSes
         /// <summary>Whether <see cref="Tick"/> has something to wait for.</summary>
         public bool IsWaiting => !IsUpToDate || (_isHeldReady && !double.IsInfinity(_host.RestDelay));
 
+        /// <summary>Whether <see cref="ComputeNow"/> would give what is shown.</summary>
+        public bool IsFinestShown =>
+            _isShown && CurrentLevel.IsFinest && (CurrentLevel.HasCreases || !_wantsCreases);
+
         private bool IsComputed =>
             !Atoms.IsSet || (_slot == null && !_hasArrival && (_isStopped || IsDone || IsLeftCoarse));
 
@@ -175,7 +179,10 @@ namespace QuickSes
             ContextSlot slot = SurfaceScheduler.PoolOf(_host.Backend).LendNow(this, goesOn, out QuickSesError error);
             if (slot == null)
             {
-                FailToBegin(error);
+                if (error.Status == QuickSesStatus.Cancelled)
+                    LastError = error; // by who waits for it, to whom it is no failure
+                else
+                    FailToBegin(error);
                 return false;
             }
             _isStopped = false;
