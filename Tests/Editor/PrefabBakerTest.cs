@@ -71,6 +71,62 @@ namespace QuickSes.Tests
             Assert.That(AssetDatabase.AssetPathToGUID(_folder + "/a mesh.asset"), Is.EqualTo(mesh));
         }
 
+        [Test]
+        public void APrefabThatHasASurfaceIsNotReplacedByOneThatHasNone()
+        {
+            string path = _folder + "/a.prefab";
+            MolecularSurface surface = MakeSurface();
+            surface.transform.SetParent(_created.Keep(new GameObject("parent").transform));
+            PrefabUtility.SaveAsPrefabAsset(surface.transform.parent.gameObject, path);
+            Assert.That(PrefabBaker.TryBake(surface, path, out _, out string error), Is.False);
+            Assert.That(error, Does.Contain(path));
+            var kept = AssetDatabase.LoadAssetAtPath<GameObject>(path);
+            Assert.That(kept.GetComponentInChildren<MolecularSurface>(true) != null, Is.True);
+            AssertNothingBeside("a");
+        }
+
+        [TestCase(".a")]
+        [TestCase(" a")]
+        public void NamesThatUnityRefusesAreRefusedBeforeAnythingIsSaved(string name)
+        {
+            Assert.That(PrefabBaker.TryBake(MakeSurface(), $"{_folder}/{name}.prefab", out _, out string error), Is.False);
+            Assert.That(error, Does.Contain(name));
+            AssertNothingBeside(name);
+        }
+
+        [Test]
+        public void AnAssetOfAnotherKindBesideItIsNotOverwritten([Values("a mesh.asset", "a material.mat")] string name)
+        {
+            MolecularSurface surface = MakeSurface();
+            var material = new Material(surface.GetComponent<MeshRenderer>().sharedMaterial);
+            surface.GetComponent<MeshRenderer>().sharedMaterial = material;
+            AssetDatabase.CreateAsset(new TextAsset("text"), _folder + "/" + name);
+            Assert.That(PrefabBaker.TryBake(surface, _folder + "/a.prefab", out _, out string error), Is.False);
+            Assert.That(error, Does.Contain(name).And.Contain("TextAsset"));
+            Assert.That(AssetDatabase.LoadMainAssetAtPath(_folder + "/" + name), Is.InstanceOf<TextAsset>());
+            Assert.That(AssetDatabase.LoadMainAssetAtPath(_folder + "/a.prefab") == null, Is.True);
+            Object.DestroyImmediate(material);
+        }
+
+        [Test]
+        public void AMaterialThatIsThereTwiceIsSavedOnce()
+        {
+            MolecularSurface surface = MakeSurface();
+            var renderer = surface.GetComponent<MeshRenderer>();
+            var material = new Material(renderer.sharedMaterial);
+            var other = new Material(renderer.sharedMaterial);
+            renderer.sharedMaterials = new[] { material, null, material, other };
+            Material[] saved = Bake(surface, "a.prefab").GetComponent<MeshRenderer>().sharedMaterials;
+            Assert.That(saved.Length, Is.EqualTo(4));
+            Assert.That(saved[1] == null, Is.True);
+            Assert.That(saved[2], Is.SameAs(saved[0]));
+            Assert.That(saved[3], Is.Not.SameAs(saved[0]));
+            foreach (int k in new[] { 0, 3 })
+                Assert.That(AssetDatabase.Contains(saved[k]), Is.True);
+            Object.DestroyImmediate(material);
+            Object.DestroyImmediate(other);
+        }
+
         [TestCase("a.prefab", "Assets/")]
         [TestCase("Assets/a.asset", ".prefab")]
         [TestCase("Assets/no such folder/a.prefab", "Assets/no such folder")]
@@ -88,6 +144,12 @@ namespace QuickSes.Tests
             int objects = surface.gameObject.scene.rootCount;
             Bake(surface, "a.prefab");
             Assert.That(surface.gameObject.scene.rootCount, Is.EqualTo(objects));
+        }
+
+        private void AssertNothingBeside(string name)
+        {
+            foreach (string path in new[] { name + " mesh.asset", name + " material.mat" })
+                Assert.That(AssetDatabase.LoadMainAssetAtPath($"{_folder}/{path}") == null, Is.True, path);
         }
 
         private MolecularSurface MakeSurface()

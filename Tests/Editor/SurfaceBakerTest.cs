@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using QuickSes.Editor;
+using System.IO;
 using UnityEditor;
 using UnityEngine;
 using UnityEngine.Rendering;
+using UnityEngine.TestTools;
 
 namespace QuickSes.Tests
 {
@@ -80,7 +82,49 @@ namespace QuickSes.Tests
             Assert.That(AssetDatabase.LoadMainAssetAtPath(path), Is.InstanceOf<TextAsset>());
         }
 
+        [Test]
+        public void AFileThatCannotBeReadIsNotOverwritten()
+        {
+            const string text = "of a script that is missing";
+            string path = _folder + "/a.asset";
+            LogAssert.ignoreFailingMessages = true; // Unity tells that it can't be read
+            File.WriteAllText(path, text);
+            AssetDatabase.ImportAsset(path);
+            AssertRefused(MakeSurface(), path, "there already");
+            Assert.That(File.ReadAllText(path), Is.EqualTo(text));
+        }
+
+        [Test]
+        public void AMeshAssetThatMayNotBeWrittenStaysAsItIs()
+        {
+            MolecularSurface surface = MakeSurface();
+            Mesh first = Bake(surface, "a.asset");
+            int coarse = first.vertexCount;
+            first.UploadMeshData(true);
+            surface.Spacing /= 2;
+            AssertRefused(surface, _folder + "/a.asset", "Read/Write");
+            Assert.That(first.vertexCount, Is.EqualTo(coarse));
+        }
+
+        [Test]
+        public void AFileThatIsReadOnlyStaysAsItIs()
+        {
+            MolecularSurface surface = MakeSurface();
+            string path = _folder + "/a.asset";
+            Mesh first = Bake(surface, "a.asset");
+            int coarse = first.vertexCount;
+            surface.Spacing /= 2;
+            File.SetAttributes(path, FileAttributes.ReadOnly);
+            AssertRefused(surface, path, "read-only");
+            File.SetAttributes(path, FileAttributes.Normal);
+            Assert.That(first.vertexCount, Is.EqualTo(coarse));
+        }
+
         [TestCase("a.asset", "Assets/")]
+        [TestCase("Assets/../a.asset", "Assets/..")]
+        [TestCase("Assets/.a.asset", ".a")]
+        [TestCase("Assets/ a.asset", " a")]
+        [TestCase("Assets/.asset", ".asset")]
         [TestCase("Assets/a.mesh", ".asset")]
         [TestCase("Assets/no such folder/a.asset", "Assets/no such folder")]
         public void PathsOutsideTheProjectAreRefused(string path, string named) =>
@@ -89,6 +133,61 @@ namespace QuickSes.Tests
         [Test]
         public void WithoutAtomsThereIsNothingToBake() =>
             AssertRefused(_created.Keep(SurfaceCreator.CreateEmpty(null)), _folder + "/a.asset", "no atoms");
+
+        [Test]
+        public void WhatIsHiddenIsNotInTheAsset()
+        {
+            MolecularSurface surface = MakeSurface();
+            surface.SetVisible(new[] { true, false });
+            Mesh asset = Bake(surface, "a.asset");
+            Assert.That(asset.GetIndexCount(0), Is.GreaterThan(0).And.LessThan(3 * surface.CurrentLevel.TriangleCount));
+            surface.SetVisible(new[] { false, false });
+            AssertRefused(surface, _folder + "/b.asset", "hidden");
+            Assert.That(AssetDatabase.LoadMainAssetAtPath(_folder + "/b.asset") == null, Is.True);
+            AssertRefused(surface, _folder + "/a.asset", "hidden");
+            Assert.That(asset.GetIndexCount(0), Is.GreaterThan(0), "it was overwritten by nothing");
+        }
+
+        [Test]
+        public void WhatWasEditedJustNowIsBaked()
+        {
+            string path = Path.Combine(Application.temporaryCachePath, "one atom.pdb");
+            File.WriteAllText(path,
+                "ATOM      1  CA  ALA A   1      11.639   6.071  -5.147  1.00  0.00           C\nEND\n");
+            MolecularSurface surface = _created.Keep(SurfaceCreator.CreateEmpty(null));
+            surface.Source.SetAsset(TwoAtoms());
+            Assert.That(surface.LoadSource(), Is.True);
+            int vertices = Bake(surface, "a.asset").vertexCount;
+            var edited = new SerializedObject(surface);
+            edited.FindProperty("_source._kind").intValue = (int)MoleculeSourceKind.File;
+            edited.FindProperty("_source._path").stringValue = path;
+            edited.ApplyModifiedProperties();
+            Mesh asset = Bake(surface, "b.asset");
+            File.Delete(path);
+            Assert.That(surface.AtomCount, Is.EqualTo(1));
+            Assert.That(asset.vertexCount, Is.LessThan(vertices));
+        }
+
+        [Test]
+        public void HandlersMayBake([Values] bool ofEachSurface)
+        {
+            MolecularSurface surface = MakeSurface();
+            int bakes = 0;
+            if (ofEachSurface)
+                surface.SurfaceUpdated += _ => Assert.That(Bake(surface, $"{++bakes}.asset") != null);
+            else
+                surface.RefinementFinished += () => Assert.That(Bake(surface, $"{++bakes}.asset") != null);
+            Assert.That(surface.ComputeNow(), Is.True, surface.LastError.Message);
+            Assert.That(bakes, Is.EqualTo(1));
+        }
+
+        [Test]
+        public void ASurfaceThatAHandlerDestroysIsNotBaked()
+        {
+            MolecularSurface surface = MakeSurface();
+            surface.SurfaceUpdated += _ => Object.DestroyImmediate(surface.gameObject);
+            AssertRefused(surface, _folder + "/a.asset", "destroyed");
+        }
 
         [Test]
         public void ASurfaceThatIsOffIsRefused()
@@ -113,6 +212,10 @@ namespace QuickSes.Tests
             CreatedSurfaces.GiveAtoms(surface);
             return surface;
         }
+
+        private static TextAsset TwoAtoms() => new TextAsset(
+            "ATOM      1  CA  ALA A   1      11.639   6.071  -5.147  1.00  0.00           C\n" +
+            "ATOM      2  CA  ALA A   2      14.639   6.071  -5.147  1.00  0.00           C\nEND\n") { name = "two.pdb" };
 
         private Mesh Bake(MolecularSurface surface, string name)
         {

@@ -31,6 +31,8 @@ namespace QuickSes.Editor
             // What any system refuses, not only this one: projects are opened on others too.
             foreach (char refused in "<>:\"/\\|?*")
                 name = name.Replace(refused, '_');
+            if (name.StartsWith(".")) // which hides a file
+                name = "_" + name.Substring(1);
             return name.Length == 0 ? Default : name;
         }
 

@@ -3,6 +3,7 @@ using System;
 using System.Collections.Generic;
 using System.IO;
 using UnityEditor;
+using UnityEditor.SceneManagement;
 using UnityEngine;
 
 namespace QuickSes.Editor
@@ -21,7 +22,7 @@ namespace QuickSes.Editor
         /// (vertex colours included) in an asset beside it. The object is called as the file; it has the surface's
         /// rotation, scale, layer and the settings of its renderer. Materials that are assets are referred to; others
         /// are saved beside it too. Assets that are there already keep their GUIDs and get the new content, which can't
-        /// be undone.
+        /// be undone; but a prefab with a <see cref="MolecularSurface"/>, which would be lost, is left alone.
         /// </summary>
         /// <param name="surface">In an open scene or prefab stage, and active.</param>
         /// <param name="prefabPath">
@@ -69,10 +70,7 @@ namespace QuickSes.Editor
             if (surface == null)
                 throw new ArgumentNullException(nameof(surface));
             prefab = null;
-            error = SurfaceBaker.ErrorOf(prefabPath, Extension, typeof(GameObject));
-            for (int k = 0; error.Length == 0 && k < MaterialsOf(surface).Length; ++k)
-                if (IsToBeSaved(MaterialsOf(surface)[k]))
-                    error = SurfaceBaker.ErrorOf(MoleculeNames.MaterialBeside(prefabPath, k), ".mat", typeof(Material));
+            error = ErrorOf(surface, prefabPath);
             if (error.Length > 0 || !SurfaceBaker.TryBake(surface, MoleculeNames.MeshBeside(prefabPath), goesOn,
                 out Mesh mesh, out error))
                 return false;
@@ -82,12 +80,37 @@ namespace QuickSes.Editor
                 Fill(made, surface, mesh, prefabPath);
                 prefab = PrefabUtility.SaveAsPrefabAsset(made, prefabPath, out bool isSaved);
                 error = isSaved ? "" : $"'{prefabPath}' could not be saved: the Console says why.";
-                return isSaved;
+            }
+            catch (UnityException exception)
+            {
+                error = exception.Message;
             }
             finally
             {
                 UnityEngine.Object.DestroyImmediate(made);
             }
+            return error.Length == 0;
+        }
+
+        // Of the prefab and the materials; that of the mesh is told by who bakes it.
+        private static string ErrorOf(MolecularSurface surface, string prefabPath)
+        {
+            string error = SurfaceBaker.ErrorOf(prefabPath, Extension, typeof(GameObject));
+            if (error.Length == 0 && HoldsSurface(surface, prefabPath))
+                error = $"'{prefabPath}' is a prefab with a Molecular Surface, which would be lost.";
+            foreach (int slot in SlotsToSave(MaterialsOf(surface)))
+                if (error.Length == 0)
+                    error = SurfaceBaker.ErrorOf(MoleculeNames.MaterialBeside(prefabPath, slot), ".mat", typeof(Material));
+            return error;
+        }
+
+        // In the file, or where the prefab is open and not saved yet.
+        private static bool HoldsSurface(MolecularSurface surface, string prefabPath)
+        {
+            var present = AssetDatabase.LoadAssetAtPath<GameObject>(prefabPath);
+            PrefabStage stage = PrefabStageUtility.GetPrefabStage(surface.gameObject);
+            return (present != null && present.GetComponentInChildren<MolecularSurface>(true) != null) ||
+                (stage != null && stage.assetPath.Equals(prefabPath, StringComparison.OrdinalIgnoreCase));
         }
 
         private static void Fill(GameObject made, MolecularSurface surface, Mesh mesh, string prefabPath)
@@ -99,9 +122,14 @@ namespace QuickSes.Editor
             var renderer = made.AddComponent<MeshRenderer>();
             EditorUtility.CopySerialized(surface.GetComponent<MeshRenderer>(), renderer);
             Material[] materials = MaterialsOf(surface);
-            for (int k = 0; k < materials.Length; ++k)
-                if (IsToBeSaved(materials[k]))
-                    materials[k] = Save(materials[k], MoleculeNames.MaterialBeside(prefabPath, k));
+            foreach (int slot in SlotsToSave(materials))
+            {
+                Material saved = Save(materials[slot], MoleculeNames.MaterialBeside(prefabPath, slot));
+                Material original = materials[slot];
+                for (int k = slot; k < materials.Length; ++k)
+                    if (materials[k] == original)
+                        materials[k] = saved;
+            }
             renderer.sharedMaterials = materials;
             renderer.enabled = true;
         }
@@ -109,22 +137,32 @@ namespace QuickSes.Editor
         private static Material[] MaterialsOf(MolecularSurface surface) =>
             surface.GetComponent<MeshRenderer>().sharedMaterials;
 
-        private static bool IsToBeSaved(Material material) => material != null && !AssetDatabase.Contains(material);
+        // The first of each material that is no asset.
+        private static List<int> SlotsToSave(Material[] materials)
+        {
+            var slots = new List<int>();
+            for (int k = 0; k < materials.Length; ++k)
+                if (materials[k] != null && !AssetDatabase.Contains(materials[k]) &&
+                    Array.IndexOf(materials, materials[k]) == k)
+                    slots.Add(k);
+            return slots;
+        }
 
         private static Material Save(Material material, string path)
         {
             var present = AssetDatabase.LoadMainAssetAtPath(path) as Material;
-            Material asset = present != null ? present : new Material(material);
-            if (present == null)
+            Material asset = present != null ? present : new Material(material) { hideFlags = HideFlags.None };
+            try
             {
-                asset.hideFlags = HideFlags.None;
-                AssetDatabase.CreateAsset(asset, path);
-                return asset;
+                asset.shader = material.shader;
+                asset.CopyPropertiesFromMaterial(material);
+                SurfaceBaker.Save(asset, path);
             }
-            asset.shader = material.shader;
-            asset.CopyPropertiesFromMaterial(material);
-            EditorUtility.SetDirty(asset);
-            AssetDatabase.SaveAssetIfDirty(asset);
+            finally
+            {
+                if (!AssetDatabase.Contains(asset))
+                    UnityEngine.Object.DestroyImmediate(asset);
+            }
             return asset;
         }
 
@@ -132,9 +170,8 @@ namespace QuickSes.Editor
         private static bool MayReplace(MolecularSurface surface, string prefabPath)
         {
             var replaced = new List<string> { MoleculeNames.MeshBeside(prefabPath) };
-            for (int k = 0; k < MaterialsOf(surface).Length; ++k)
-                if (IsToBeSaved(MaterialsOf(surface)[k]))
-                    replaced.Add(MoleculeNames.MaterialBeside(prefabPath, k));
+            foreach (int slot in SlotsToSave(MaterialsOf(surface)))
+                replaced.Add(MoleculeNames.MaterialBeside(prefabPath, slot));
             replaced.RemoveAll(path => AssetDatabase.LoadMainAssetAtPath(path) == null);
             return replaced.Count == 0 || EditorUtility.DisplayDialog("Replace assets?",
                 "These are there already and get the new content:\n\n" + string.Join("\n", replaced), "Replace", "Cancel");

@@ -15,9 +15,10 @@ namespace QuickSes.Editor
         private const string Extension = ".asset";
 
         /// <summary>
-        /// Computes the finest surface of a component, however long that takes, and saves a copy of it: exact buffers,
-        /// 32-bit indices, in Å of the component's space. A mesh asset that is there already keeps its GUID and gets
-        /// the new content, so what refers to it shows that; this can't be undone.
+        /// Computes the finest surface of a component, however long that takes, unless it is shown, and saves a copy of
+        /// what is visible of it: exact buffers, 32-bit indices, in Å of the component's space. A mesh asset that is there
+        /// already keeps its GUID and gets the new content, so what refers to it shows that; this can't be undone. Nothing
+        /// is written over files of other kinds, files that can't be read, or may not be written.
         /// </summary>
         /// <param name="surface">In an open scene or prefab stage, and active.</param>
         /// <param name="assetPath">Such as "Assets/Crambin.asset", in a folder that exists.</param>
@@ -36,13 +37,11 @@ namespace QuickSes.Editor
             error = ErrorOf(assetPath, Extension, typeof(Mesh));
             if (error.Length > 0 || !TryCompute(surface, goesOn, out error))
                 return false;
-            if (surface.CurrentLevel.TriangleCount == 0)
-            {
-                error = $"The surface of '{surface.name}' is empty.";
-                return false;
-            }
-            asset = Save(surface, assetPath);
-            return true;
+            if (!surface.IsAnyVisible)
+                error = surface.CurrentLevel.TriangleCount == 0
+                    ? $"The surface of '{surface.name}' is empty."
+                    : $"All of the surface of '{surface.name}' is hidden.";
+            return error.Length == 0 && TrySave(surface, assetPath, out asset, out error);
         }
 
         /// <summary>Asks where to save it; what goes wrong is shown in a dialog.</summary>
@@ -79,7 +78,9 @@ namespace QuickSes.Editor
             "Molecular Surface", surface.Progress > 0 ? "Computing the finest surface" : SurfaceStatus.Starting,
             surface.Progress);
 
-        /// <summary>Why an asset of that type can't be saved there; "": it can.</summary>
+        /// <summary>
+        /// Why an asset of that type can't be saved there; "": it can. Version control is asked for what is there already.
+        /// </summary>
         internal static string ErrorOf(string assetPath, string extension, Type type)
         {
             if (assetPath == null)
@@ -87,44 +88,94 @@ namespace QuickSes.Editor
             if (!assetPath.StartsWith("Assets/", StringComparison.Ordinal) ||
                 !assetPath.EndsWith(extension, StringComparison.OrdinalIgnoreCase))
                 return $"'{assetPath}' is no path of the form Assets/...{extension}.";
+            string name = Path.GetFileName(assetPath);
+            if (name.Length == extension.Length || name[0] == '.' || name[0] == ' ')
+                return $"'{name}' is no name of an asset: Unity takes none that is empty, or begins with a dot or a space.";
             string folder = Path.GetDirectoryName(assetPath).Replace('\\', '/');
             if (!AssetDatabase.IsValidFolder(folder))
                 return $"There is no folder '{folder}'.";
             UnityEngine.Object present = AssetDatabase.LoadMainAssetAtPath(assetPath);
-            return present == null || type.IsInstanceOfType(present)
-                ? ""
-                : $"'{assetPath}' is there already and is no {type.Name} but a {present.GetType().Name}.";
+            return present != null ? ErrorOf(present, assetPath, type)
+                : File.Exists(assetPath) ? $"'{assetPath}' is there already and can't be read."
+                : "";
+        }
+
+        private static string ErrorOf(UnityEngine.Object present, string assetPath, Type type)
+        {
+            if (!type.IsInstanceOfType(present))
+                return $"'{assetPath}' is there already and is no {type.Name} but a {present.GetType().Name}.";
+            if (present is Mesh mesh && !mesh.isReadable)
+                return $"'{assetPath}' is there already, and its Read/Write is off.";
+            if (!AssetDatabase.MakeEditable(assetPath))
+                return $"'{assetPath}' is there already, and version control refuses to have it written.";
+            return File.Exists(assetPath) && (File.GetAttributes(assetPath) & FileAttributes.ReadOnly) != 0
+                ? $"'{assetPath}' is there already and is read-only."
+                : "";
         }
 
         private static bool TryCompute(MolecularSurface surface, Func<bool> goesOn, out string error)
         {
-            error = "";
             if (EditorUtility.IsPersistent(surface) || !surface.isActiveAndEnabled)
+            {
                 error = $"'{surface.name}' is not active in an open scene or prefab, so it has no surface.";
-            else if (surface.AtomCount == 0 && !surface.Source.IsSet)
-                error = $"'{surface.name}' has no atoms: choose a source, or give it some by SetAtoms.";
-            else if ((surface.AtomCount == 0 && !surface.LoadSource()) || !surface.ComputeWhile(goesOn))
-                error = surface.LastError.Status != QuickSesStatus.Ok ? surface.LastError.Message : "It was cancelled.";
+                return false;
+            }
+            surface.FollowEditsNow();
+            error = surface.AtomCount == 0 && !surface.Source.IsSet
+                ? $"'{surface.name}' has no atoms: choose a source, or give it some by SetAtoms."
+                : "";
+            if (error.Length > 0)
+                return false;
+            bool isCancelled = false;
+            Func<bool> goesOnNoted = goesOn == null ? goesOn : () => !(isCancelled = !goesOn());
+            // Handlers may destroy it.
+            bool isComputed = (surface.AtomCount > 0 || surface.LoadSource()) && surface != null &&
+                (surface.IsFinestShown || surface.ComputeWhile(goesOnNoted));
+            if (surface == null)
+                error = "The surface was destroyed while it was computed.";
+            else if (!isComputed)
+                error = isCancelled || surface.LastError.Status == QuickSesStatus.Ok
+                    ? "It was cancelled."
+                    : surface.LastError.Message;
             return error.Length == 0;
         }
 
-        private static Mesh Save(MolecularSurface surface, string path)
+        private static bool TrySave(MolecularSurface surface, string path, out Mesh asset, out string error)
         {
+            error = "";
             var present = AssetDatabase.LoadMainAssetAtPath(path) as Mesh;
-            Mesh asset = present != null ? present : new Mesh();
-            surface.CopyTo(asset);
-            asset.name = Path.GetFileNameWithoutExtension(path);
-            MeshUtility.SetMeshCompression(asset, ModelImporterMeshCompression.Off);
-            if (present == null)
+            asset = present != null ? present : new Mesh();
+            try
+            {
+                surface.CopyTo(asset);
+                asset.name = Path.GetFileNameWithoutExtension(path);
+                MeshUtility.SetMeshCompression(asset, ModelImporterMeshCompression.Off);
+                Save(asset, path);
+            }
+            catch (UnityException exception)
+            {
+                error = exception.Message;
+            }
+            finally
+            {
+                if (!AssetDatabase.Contains(asset))
+                    UnityEngine.Object.DestroyImmediate(asset);
+            }
+            if (error.Length > 0)
+                asset = null;
+            return error.Length == 0;
+        }
+
+        /// <summary>Writes an asset that is there, or makes one; throws UnityException if that is not possible.</summary>
+        internal static void Save(UnityEngine.Object asset, string path)
+        {
+            if (!AssetDatabase.Contains(asset))
             {
                 AssetDatabase.CreateAsset(asset, path);
+                return;
             }
-            else
-            {
-                EditorUtility.SetDirty(asset);
-                AssetDatabase.SaveAssetIfDirty(asset);
-            }
-            return asset;
+            EditorUtility.SetDirty(asset);
+            AssetDatabase.SaveAssetIfDirty(asset);
         }
     }
 }

@@ -19,6 +19,7 @@ namespace QuickSes.Tests
 
         [TestCase("1crn", "1crn")]
         [TestCase(" chain A/B: \"x\"? ", "chain A_B_ _x__")]
+        [TestCase(".hidden", "_hidden")] // Unity takes no file of that name
         [TestCase("", "Molecular Surface")]
         [TestCase(null, "Molecular Surface")]
         public void AssetsAreCalledAsTheirObjectWithoutWhatFileSystemsRefuse(string objectName, string name) =>
