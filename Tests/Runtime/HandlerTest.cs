@@ -132,6 +132,58 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator NothingComesOfWhatAHandlerStops([Values] bool isDisabled)
+        {
+            _rig = SurfaceRig.WithBlob(300, 6);
+            MolecularSurface surface = _rig.Surface;
+            surface.SurfaceUpdated += level =>
+            {
+                if (isDisabled)
+                    surface.enabled = false;
+                else
+                    surface.Cancel();
+            };
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > 0);
+            Assert.That(surface.IsBusy, Is.False);
+            yield return SurfaceRig.Frames(5);
+            Assert.That(_rig.Levels.Count, Is.EqualTo(1));
+            Assert.That(_rig.Finished, Is.EqualTo(_rig.Levels[0].IsFinest ? 1 : 0));
+            Assert.That(SurfaceScheduler.LentCount + SurfaceScheduler.WaitingCount, Is.Zero);
+            surface.enabled = true;
+            surface.Recompute();
+            yield return SurfaceRig.Until(() => _rig.Levels.Count > 1);
+            Assert.That(surface.IsBusy, Is.False);
+            Assert.That(_rig.Failures, Is.Empty);
+        }
+
+        [UnityTest]
+        public IEnumerator APlayerThatAHandlerDisablesShowsNoMoreUntilItIsEnabled()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                int stopped = -1;
+                playing.Player.FrameShown += frame =>
+                {
+                    playing.Player.enabled = frame < 2 || stopped >= 0;
+                    stopped = playing.Player.enabled ? stopped : frame;
+                };
+                playing.UseEnsemble(20);
+                playing.Player.FramesPerSecond = 1000;
+                playing.Load();
+                playing.Player.Play();
+                yield return SurfaceRig.Until(() => stopped >= 0);
+                Assert.That(playing.Player.IsLoading, Is.False);
+                int count = playing.Shown.Count;
+                Assert.That(playing.Shown[count - 1], Is.EqualTo(stopped));
+                yield return SurfaceRig.Frames(5);
+                Assert.That(playing.Shown.Count, Is.EqualTo(count));
+                playing.Player.enabled = true;
+                yield return SurfaceRig.Until(() => playing.Shown.Count > count);
+                Assert.That(playing.Failures, Is.Empty);
+            }
+        }
+
+        [UnityTest]
         public IEnumerator AHandlerMayDestroyWhatAsksForAtoms()
         {
             _rig = new SurfaceRig();

@@ -165,6 +165,8 @@ namespace UnityEngine
         {
             RequireAlive("SetIndexBufferParams");
             RequireReadable("index");
+            if (Record.RefusesIndices)
+                throw new OutOfMemoryException("There is no memory for indices.");
             Writable().SetIndexParams(indexCount, format);
             ++Record.IndexParamsCalls;
             Record.Change(this);

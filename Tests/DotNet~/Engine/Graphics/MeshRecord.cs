@@ -36,6 +36,9 @@ namespace QuickSes.EngineDouble
         /// </summary>
         public bool AwaitsNotification { get; private set; }
 
+        /// <summary>Lets there be no memory for its indices.</summary>
+        public bool RefusesIndices { get; set; }
+
         internal bool IsChecked { get; set; } = true;
 
         /// <summary>The bounds that those who use the mesh were told.</summary>
