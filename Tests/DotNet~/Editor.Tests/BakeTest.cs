@@ -17,7 +17,7 @@ namespace QuickSes.Tests
     /// <summary>What baking leaves in the project, in memory and in the scene, whatever the user or the disk do.</summary>
     public sealed class BakeTest
     {
-        private const int MostFrames = 20000;
+        private const int MostFrames = 100000;
         private const string MeshPath = "Assets/a mesh.asset";
         private const string MaterialPath = "Assets/a material.mat";
         private const string PrefabPath = "Assets/a.prefab";
@@ -191,6 +191,18 @@ namespace QuickSes.Tests
         }
 
         [Test]
+        public void ASurfaceThatWasAtRestGoesOnWhereItsBakingWasCancelled()
+        {
+            GiveManyAtoms();
+            Engine.Frame();
+            _surface.Cancel();
+            Settle();
+            Assert.That(_surface.CurrentLevel.IsFinest, Is.False);
+            Assert.That(SurfaceBaker.TryBake(_surface, MeshPath, () => false, out _, out _), Is.False);
+            FramesUntil(() => _surface.CurrentLevel.IsFinest);
+        }
+
+        [Test]
         public void TheReasonIsNotThatOfAFailureBefore()
         {
             _surface.Failed += _ => { };
@@ -224,8 +236,7 @@ namespace QuickSes.Tests
             player.StructureSource.SetAsset(Ensemble(20));
             Assert.That(player.Load(), Is.True, player.LastError.ToString());
             _surface = player.GetComponent<MolecularSurface>();
-            _surface.RestDelay = float.PositiveInfinity; // so that what is shown has no creases
-            FramesUntil(() => player.ShownFrame == 0 && !_surface.IsBusy);
+            FramesUntil(() => player.ShownFrame == 0);
             player.Play();
             FramesUntil(() => player.ShownFrame > 2);
             float shift = _surface.Positions[0].z;
@@ -235,8 +246,24 @@ namespace QuickSes.Tests
             Assert.That(asset.vertexCount, Is.EqualTo(_surface.CurrentLevel.VertexCount));
             Assert.That(asset.bounds.center.z, Is.EqualTo(shift).Within(0.1));
             int shown = player.ShownFrame;
-            FramesUntil(() => player.ShownFrame != shown && _surface.CurrentLevel.IsOfNewestAtoms);
+            FramesUntil(() => player.ShownFrame != shown);
+            player.Pause();
+            Settle();
+            Assert.That(_surface.Mesh.bounds.center.z, Is.Not.EqualTo(shift).Within(0.1), "it goes on");
             Assert.That(EditorDriver.IsSaved(MeshPath), Is.True, "it does not change with the surface");
+        }
+
+        [Test]
+        public void ASurfaceThatNeverRestsIsBakedWithItsCreases()
+        {
+            Settle();
+            _surface.RestDelay = float.PositiveInfinity;
+            _surface.FrameBudget = 0; // all levels
+            _surface.SetPositions(new[] { Vector3.zero, new Vector3(2, 0, 0) });
+            Settle();
+            Assert.That(_surface.CurrentLevel.IsFinest && !_surface.CurrentLevel.HasCreases, Is.True);
+            Assert.That(TryBakePrefab(), Is.Empty);
+            Assert.That(_surface.CurrentLevel.HasCreases, Is.True);
         }
 
         [Test]

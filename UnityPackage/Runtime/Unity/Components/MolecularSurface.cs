@@ -258,7 +258,6 @@ namespace QuickSes
             if (!Session.Atoms.IsSet)
                 throw new InvalidOperationException("There are no atoms: call SetAtoms or choose a source.");
             bool isComputed = Session.ComputeNow(goesOn);
-            QueueEditorUpdate(); // in which what was cancelled goes on
             Session.RaiseEvents();
             return isComputed;
         }
