@@ -10,13 +10,13 @@ namespace QuickSes.EngineDouble
     /// does not expect, those of taking its scene down included.
     /// </summary>
     [AttributeUsage(AttributeTargets.Assembly | AttributeTargets.Class)]
-    public sealed class EngineTestAttribute : Attribute, ITestAction
+    public class EngineTestAttribute : Attribute, ITestAction
     {
         public ActionTargets Targets => ActionTargets.Test;
 
         public void BeforeTest(ITest test)
         {
-            Engine.Reset();
+            Begin();
             LogScope.Open();
         }
 
@@ -24,12 +24,16 @@ namespace QuickSes.EngineDouble
         {
             try
             {
-                Engine.Reset();
+                End();
             }
             finally
             {
                 LogScope.Close();
             }
         }
+
+        protected virtual void Begin() => Engine.Reset();
+
+        protected virtual void End() => Engine.Reset();
     }
 }
