@@ -7,24 +7,24 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace quickses {
 
 // Frames in a row that were made alike. With more steps, another method or a finer level, one may take a thousand times
-// as long.
+// as long; coarser levels beside the finest one do not matter that much.
 class FrameHistory {
  public:
   // One is about to be made, with these settings, at these spacings. Those that were made otherwise are forgotten.
   void begin(const qses_settings &settings, Span<const float> spacings) {
     static_assert(alignof(qses_settings) == 4, "members of four bytes leave no gaps");
-    qses_settings untagged = settings;
-    untagged.tag = 0;
-    const float coarsest = spacings.size > 0 ? spacings[0] : 0.f;
-    if (std::memcmp(&untagged, &settings_, sizeof untagged) != 0 || spacings.size != levels_ || coarsest != coarsest_)
-      forget();
-    settings_ = untagged;
-    levels_ = spacings.size;
-    coarsest_ = coarsest;
+    qses_settings like = settings;
+    like.spacing = spacings.size > 0 ? spacings[spacings.size - 1] : 0.f;
+    like.tag = like.series = like.level_count = 0;
+    like.frame_budget_ms = like.show_ms_per_mb = 0.f;
+    std::fill(std::begin(like.levels), std::end(like.levels), 0.f);
+    if (std::memcmp(&like, &like_, sizeof like) != 0) forget();
+    like_ = like;
   }
   // It was made.
   void end(double milliseconds) {
@@ -41,10 +41,8 @@ class FrameHistory {
   bool is_settled() const { return made_ > 1; }
 
  private:
-  qses_settings settings_{};
-  size_t levels_ = 0;
-  float coarsest_ = 0;
-  int made_ = 0;  // at most 2
+  qses_settings like_{};  // as far as it matters, at the finest of the spacings
+  int made_ = 0;          // at most 2
   double milliseconds_ = 0;
 };
 

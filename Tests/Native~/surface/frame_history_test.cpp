@@ -69,14 +69,28 @@ TEST_F(FrameHistories, ExpectNothingOfOtherSettings) {
   EXPECT_FALSE(is_known());  // not of the last one, nor of those before it
 }
 
-// A ladder whose coarse levels are left out, as one with a budget of time chooses.
-TEST_F(FrameHistories, ExpectNothingOfOtherLevels) {
+// As where a budget of time decides about the level.
+TEST_F(FrameHistories, ExpectNothingOfAFinerLevel) {
+  history.begin(settings, {kSpacings, 1});
+  history.end(1);
+  begin();
+  EXPECT_FALSE(is_known());
+  history.end(100);
+  history.begin(settings, {kSpacings, 2});
+  EXPECT_FALSE(is_known());
+}
+
+// Which are made by turns where some frames are refined and others are not.
+TEST_F(FrameHistories, ExpectTheSameWithAndWithoutCoarseLevels) {
   make(1);
   begin(2);
-  EXPECT_FALSE(is_known());
+  EXPECT_TRUE(is_known());
   history.end(1);
-  history.begin(settings, {kSpacings, 1});
-  EXPECT_FALSE(is_known());
+  settings.level_count = 0;
+  settings.frame_budget_ms = 5;
+  settings.series = 3;
+  begin(2);
+  EXPECT_TRUE(history.is_settled());
 }
 
 // One that is refused or cancelled was not made.
