@@ -10,12 +10,14 @@
 
 class OwnFolder {
  public:
-  // The first number that nobody has: only one can make a folder.
+  // The first number that nobody has: only one can make a folder. Where it is there, but gone by the time it is looked
+  // at, that is told as an error.
   OwnFolder() {
     const std::filesystem::path all = testing::TempDir();
-    for (unsigned k = 1; !std::filesystem::create_directory(path_ = all / ("quickses_test_" + std::to_string(k)));
-         ++k) {
-    }
+    std::error_code error;
+    for (unsigned k = 1;
+         !std::filesystem::create_directory(path_ = all / ("quickses_test_" + std::to_string(k)), error); ++k)
+      if (error && error != std::errc::file_exists) throw std::filesystem::filesystem_error("no folder", path_, error);
   }
   ~OwnFolder() {
     std::error_code error;
