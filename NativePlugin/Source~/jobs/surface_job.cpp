@@ -255,7 +255,8 @@ void SurfaceJob::keep(KeptMesh *kept) {
 bool SurfaceJob::wait(double milliseconds) {
   std::unique_lock<std::mutex> lock(mutex_);
   const auto idle = [&] { return !running_ && waiting_.empty(); };
-  constexpr double kForEver = 1e9;  // 11 days; much more overflows the clock
+  if (milliseconds == 0.0) return idle();  // the system would let some ten microseconds pass
+  constexpr double kForEver = 1e9;         // 11 days; much more overflows the clock
   if (milliseconds < 0.0 || milliseconds > kForEver) {
     changed_.wait(lock, idle);
     return true;
