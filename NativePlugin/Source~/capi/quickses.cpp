@@ -25,10 +25,15 @@ using quickses::write_struct;
 
 namespace {
 
-bool is_within(double value, double low, double high) { return value >= low && value <= high; }
+// Names are made only where they are told: frames allocate nothing.
+struct LevelName {
+  uint32_t level;
+  explicit operator std::string() const { return "settings.levels[" + std::to_string(level) + "]"; }
+};
 
-void check_range(const char *name, double value, double low, double high, const char *unit) {
-  if (is_within(value, low, high)) return;
+template <class Name>
+void check_range(const Name &name, double value, double low, double high, const char *unit) {
+  if (value >= low && value <= high) return;
   invalid(std::string(name) + " is " + number_text(value) + ": it must lie between " + number_text(low) + " and " +
           number_text(high) + unit);
 }
@@ -47,13 +52,11 @@ void check_settings(const qses_settings &s) {
     invalid("settings.level_count is " + std::to_string(s.level_count) + ": at most " +
             std::to_string(QSES_MAX_LEVELS));
   for (uint32_t k = 0; k < s.level_count; ++k) {
-    const auto name_of = [](uint32_t level) { return "settings.levels[" + std::to_string(level) + "]"; };
     const double level = static_cast<double>(s.levels[k]);
-    // Names are made only where they are told: frames allocate nothing.
-    if (!is_within(level, 0.001, 100)) check_range(name_of(k).c_str(), level, 0.001, 100, " Å");
+    check_range(LevelName{k}, level, 0.001, 100, " Å");
     if (k > 0 && !(s.levels[k] < s.levels[k - 1]))
-      invalid(name_of(k) + " is " + number_text(level) + ": it must be below " + name_of(k - 1) + ", which is " +
-              number_text(static_cast<double>(s.levels[k - 1])));
+      invalid(std::string(LevelName{k}) + " is " + number_text(level) + ": it must be below " +
+              std::string(LevelName{k - 1}) + ", which is " + number_text(static_cast<double>(s.levels[k - 1])));
   }
   check_range("settings.frame_budget_ms", static_cast<double>(s.frame_budget_ms), 0, 60000, " ms");
   check_range("settings.show_ms_per_mb", static_cast<double>(s.show_ms_per_mb), 0, 60000, " ms");

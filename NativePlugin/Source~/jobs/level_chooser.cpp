@@ -88,7 +88,7 @@ void LevelChooser::record(double cost_ms, double shared_ms, double bytes) {
   Level &level = levels_[current_];
   const double before = level.cost, bytes_before = level.bytes;
   const bool settled = level.frames >= 3;
-  level.add({cost_ms, shared_ms});
+  level.add({cost_ms, std::max(0.0, std::min(shared_ms, cost_ms))});
   level.bytes = bytes;
   if (settled && before > 0)
     for (Level &other : levels_)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Area of a mesh that belongs to each atom: a third of every triangle, bent along
-// the normals of its vertices, to each of its corners' owners.
+// Area of a mesh that belongs to each atom: a third of every triangle, bent along the normals of its vertices, to each
+// of its corners' owners.
 #pragma once
 
 #include "parallel/atomics.h"
