@@ -15,9 +15,6 @@ namespace QuickSes.EngineDouble
     /// </summary>
     internal sealed class Duplication
     {
-        private const BindingFlags Declared =
-            BindingFlags.DeclaredOnly | BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
-
         private readonly Dictionary<Object, Object> _copies = new Dictionary<Object, Object>();
         private readonly List<MonoBehaviour> _scripts = new List<MonoBehaviour>();
         private bool _isForFile;
@@ -97,12 +94,8 @@ namespace QuickSes.EngineDouble
             {
                 if (!typeof(Object).IsAssignableFrom(type) && !type.IsDefined(typeof(SerializableAttribute), false))
                     continue;
-                foreach (FieldInfo field in type.GetFields(Declared))
-                {
-                    if (!field.IsInitOnly && !field.IsNotSerialized && Serialization.IsSerializable(field.FieldType) &&
-                        (field.IsPublic || field.IsDefined(typeof(SerializeField), false)))
-                        field.SetValue(to, CopyOf(field.GetValue(from), field.FieldType));
-                }
+                foreach (FieldInfo field in Serialization.FieldsOf(type))
+                    field.SetValue(to, CopyOf(field.GetValue(from), field.FieldType));
             }
         }
 

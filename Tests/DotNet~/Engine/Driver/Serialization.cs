@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using System;
 using System.Collections.Generic;
+using System.Reflection;
 using UnityEngine;
 using Object = UnityEngine.Object;
 
@@ -17,6 +18,17 @@ namespace QuickSes.EngineDouble
             if (type.IsArray)
                 return Array.CreateInstance(type.GetElementType(), 0);
             return typeof(Object).IsAssignableFrom(type) ? null : Activator.CreateInstance(type, true);
+        }
+
+        /// <summary>Those of a type itself that are serialised.</summary>
+        public static IEnumerable<FieldInfo> FieldsOf(Type type)
+        {
+            const BindingFlags declared =
+                BindingFlags.DeclaredOnly | BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
+            foreach (FieldInfo field in type.GetFields(declared))
+                if (!field.IsInitOnly && !field.IsNotSerialized && IsSerializable(field.FieldType) &&
+                    (field.IsPublic || field.IsDefined(typeof(SerializeField), false)))
+                    yield return field;
         }
 
         public static bool IsSerializable(Type type)

@@ -10,9 +10,6 @@ namespace QuickSes.EngineDouble
     /// <summary>The serialised fields of a script, which the Editor writes, and then has it validate them.</summary>
     internal static class SerializedFields
     {
-        private const BindingFlags Declared =
-            BindingFlags.DeclaredOnly | BindingFlags.Instance | BindingFlags.Public | BindingFlags.NonPublic;
-
         /// <summary>What <see cref="Paste"/> takes.</summary>
         public static object Copy(MonoBehaviour script) => Values(script, script.GetType());
 
@@ -32,25 +29,21 @@ namespace QuickSes.EngineDouble
         public static FieldInfo Find(Type type, string name)
         {
             for (; type != null; type = type.BaseType)
-                if (type.GetField(name, Declared) is FieldInfo field && IsSerialized(field))
-                    return field;
+                foreach (FieldInfo field in Serialization.FieldsOf(type))
+                    if (field.Name == name)
+                        return field;
             throw new ArgumentException($"There is no serialised field {name}.");
         }
-
-        private static bool IsSerialized(FieldInfo field) => !field.IsInitOnly && !field.IsNotSerialized &&
-            Serialization.IsSerializable(field.FieldType) &&
-            (field.IsPublic || field.IsDefined(typeof(SerializeField), false));
 
         // Objects that lie within the script by their fields, the rest by value.
         private static Dictionary<FieldInfo, object> Values(object from, Type type)
         {
             var values = new Dictionary<FieldInfo, object>();
             for (; type != typeof(MonoBehaviour) && type != typeof(object); type = type.BaseType)
-                foreach (FieldInfo field in type.GetFields(Declared))
-                    if (IsSerialized(field))
-                        values.Add(field, IsPart(field, field.GetValue(from))
-                            ? Values(field.GetValue(from), field.FieldType)
-                            : field.GetValue(from) is Array array ? array.Clone() : field.GetValue(from));
+                foreach (FieldInfo field in Serialization.FieldsOf(type))
+                    values.Add(field, IsPart(field, field.GetValue(from))
+                        ? Values(field.GetValue(from), field.FieldType)
+                        : field.GetValue(from) is Array array ? array.Clone() : field.GetValue(from));
             return values;
         }
 
