@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+using NUnit.Framework;
+using QuickSes.Editor;
 using System.Collections.Generic;
 using UnityEngine;
 
@@ -13,6 +15,15 @@ namespace QuickSes.Tests
         {
             _made.Add(component.gameObject);
             return component;
+        }
+
+        /// <summary>One of two atoms, computed.</summary>
+        public MolecularSurface MakeComputed()
+        {
+            MolecularSurface surface = Keep(SurfaceCreator.CreateEmpty(null));
+            GiveAtoms(surface);
+            Assert.That(surface.ComputeNow(), Is.True, surface.LastError.Message);
+            return surface;
         }
 
         /// <summary>Two atoms that overlap.</summary>

@@ -19,9 +19,7 @@ namespace QuickSes.Tests
         [SetUp]
         public void MakeSurface()
         {
-            _surface = _created.Keep(SurfaceCreator.CreateEmpty(null));
-            CreatedSurfaces.GiveAtoms(_surface);
-            Assert.That(_surface.ComputeNow(), Is.True, _surface.LastError.Message);
+            _surface = _created.MakeComputed();
             Undo.IncrementCurrentGroup();
         }
 

@@ -70,9 +70,7 @@ TEST(JobStates, AJobThatIsFollowedMakesItsCoarsestLevelAndNoOther) {
   begin(context, settings(0.5), 2);
   gates.open(1);
   gates.wait_until_reached(2);
-  qses_mesh m;
-  qses_mesh_init(&m);
-  EXPECT_EQ(qses_collect(context, &m), QSES_OK);
+  const qses_mesh m = collected(context);
   EXPECT_EQ(m.tag, 1u);
   EXPECT_EQ(m.level, 0u);
   gates.open(2);
@@ -214,10 +212,7 @@ TEST(JobStates, FramesWithinABudgetAndOthersAreApart) {
     s.frame_budget_ms = 60000;
     begin(context, s);
     wait_for_all(context);
-    qses_mesh m;
-    qses_mesh_init(&m);
-    expect_ok(qses_collect(context, &m));
-    return m.level;
+    return collected(context).level;
   };
   EXPECT_EQ(level_of_frame(), 0u);
   EXPECT_EQ(level_of_frame(), 1u);
@@ -225,9 +220,7 @@ TEST(JobStates, FramesWithinABudgetAndOthersAreApart) {
   begin(context, s);
   wait_for_all(context);
   EXPECT_EQ(poll(context).levels_finished, 2u);
-  qses_mesh m;
-  qses_mesh_init(&m);
-  expect_ok(qses_collect(context, &m));
+  const qses_mesh m = collected(context);
   EXPECT_EQ(m.level, 1u);
   EXPECT_EQ(m.spacing, 1.f);
   const qses_settings too_fine = settings(0.05);
@@ -247,10 +240,7 @@ TEST(JobStates, ShowingCountsInABudget) {
   for (int frame = 0; frame < 3; ++frame) {
     begin(context, s);
     wait_for_all(context);
-    qses_mesh m;
-    qses_mesh_init(&m);
-    expect_ok(qses_collect(context, &m));
-    EXPECT_LT(m.level, 2u);
+    EXPECT_LT(collected(context).level, 2u);
   }
 }
 

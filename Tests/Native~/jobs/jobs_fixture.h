@@ -46,6 +46,14 @@ inline qses_mesh next_level(qses_context *context) {
   }
 }
 
+// The level that is there to be collected.
+inline qses_mesh collected(qses_context *context) {
+  qses_mesh mesh;
+  qses_mesh_init(&mesh);
+  expect_ok(qses_collect(context, &mesh));
+  return mesh;
+}
+
 // Many atoms, quickly made: a cubic lattice of them.
 inline Atoms block(int edge) {
   Atoms atoms;

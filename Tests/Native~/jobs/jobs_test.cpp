@@ -307,10 +307,7 @@ TEST(Jobs, AFrameBudgetGivesOneLevel) {
   set_atoms(context, cluster(801, 3));
   begin(context, s);
   wait_for_all(context);
-  qses_mesh m;
-  qses_mesh_init(&m);
-  expect_ok(qses_collect(context, &m));
-  EXPECT_EQ(m.level, 0u);
+  EXPECT_EQ(collected(context).level, 0u);
 }
 
 // The levels of frames within a budget that everything fits into, once a first frame has told so.
