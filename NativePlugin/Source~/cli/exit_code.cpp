@@ -31,7 +31,7 @@ Failure failure_of(std::exception_ptr exception) {
   } catch (const io::Error &error) {
     return Failure(exit_code_of(error.kind()), error.what());
   } catch (const std::bad_alloc &) {
-    return Failure(kComputingFailed, "the machine has not enough memory for this");
+    return Failure(kComputingFailed, kNotEnoughMemory);
   } catch (const std::exception &error) {
     return Failure(kComputingFailed, std::string("unexpected error: ") + error.what());
   } catch (...) {

@@ -20,6 +20,8 @@ enum ExitCode {
   kSomeFailed = 6,          // some frames of a trajectory, or some of several structures; the others are done
 };
 
+constexpr const char *kNotEnoughMemory = "the machine has not enough memory for this";
+
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode code, const std::string &message) : std::runtime_error(message), code_(code) {}

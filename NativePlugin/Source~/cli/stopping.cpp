@@ -2,6 +2,12 @@
 // What happens when the program is stopped from outside.
 #include "cli/stopping.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+#include "cli/exit_code.h"
 #include "cli/utf8.h"
 #include "io/atomic_file.h"
 
@@ -19,6 +25,26 @@
 
 namespace quickses::cli {
 namespace {
+
+bool is_out_of_memory(const std::exception_ptr &exception) {
+  if (!exception) return false;
+  try {
+    std::rethrow_exception(exception);
+  } catch (const std::bad_alloc &) {
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
+// Memory may run out where no exception may pass: nlohmann's JSON allocates in its destructor.
+[[noreturn]] void on_terminate() {
+  io::abandon_files();
+  leave_utf8();
+  if (!is_out_of_memory(std::current_exception())) std::abort();
+  std::fprintf(stderr, "quickses: %s\n", kNotEnoughMemory);
+  std::_Exit(kComputingFailed);
+}
 
 #if defined(_WIN32)
 
@@ -63,11 +89,15 @@ void occupy_standard_streams() {
 
 #if defined(_WIN32)
 
-void prepare_for_stopping() { SetConsoleCtrlHandler(&on_stop, TRUE); }
+void prepare_for_stopping() {
+  std::set_terminate(&on_terminate);
+  SetConsoleCtrlHandler(&on_stop, TRUE);
+}
 
 #else
 
 void prepare_for_stopping() {
+  std::set_terminate(&on_terminate);
   occupy_standard_streams();
   for (int signal_number : {SIGPIPE, SIGXFSZ}) signal(signal_number, SIG_IGN);
   sigset_t signals;

@@ -158,15 +158,16 @@ class Arena {
   uint64_t own_budget() const { return budget_ - std::min(budget_, taken_); }
 
   [[noreturn]] void refuse(uint64_t needed) {
-    throw MemoryRefused("the work needs at least " + describe_bytes(needed) + " but " +
-                        (budget_ ? "the memory budget is " : "the machine had free ") + describe_bytes(limit()) +
-                        ": use a larger spacing" + (budget_ ? " or a larger budget" : ""));
+    const std::string needs = "the work needs at least " + describe_bytes(needed) + " of memory but ",
+                      most = describe_bytes(limit());
+    throw MemoryRefused(budget_ ? needs + "the budget is " + most + ": use a larger spacing or a larger budget"
+                                : needs + Source::kName + " had " + most + " free: use a larger spacing");
   }
 
   void add_block(size_t bytes) {
     if (held_ + bytes > limit()) refuse(held_ + bytes);
     if (!take_block(bytes))
-      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " on top of " +
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " of memory on top of " +
                           describe_bytes(held_) + ": use a larger spacing");
   }
 

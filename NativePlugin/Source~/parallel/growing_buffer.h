@@ -22,7 +22,7 @@ class GrowingBuffer {
   // old memory.
   void *reserve(size_t bytes) {
     if (!try_reserve(bytes))
-      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " for the mesh");
+      throw MemoryRefused(std::string(Source::kName) + " refused " + describe_bytes(bytes) + " of memory for the mesh");
     return memory_;
   }
   // False where it is refused.

@@ -15,7 +15,7 @@ except ImportError:  # on Windows
 
 import cli_test
 from cli_files_test import FilesTest
-from cli_test import IS_WINDOWS, OUTPUT, USAGE, is_closed, read_obj
+from cli_test import COMPUTE, IS_WINDOWS, OK, OUTPUT, SOME_FAILED, USAGE, is_closed, read_obj
 
 
 @unittest.skipIf(IS_WINDOWS, "no such devices")
@@ -82,6 +82,47 @@ class SmallFiles(FilesTest):
             self.assertEqual(result.returncode, OUTPUT, result.stderr)
             self.assertIn(arguments[-1], result.stderr)
             self.assertEqual(self.content(), before)
+
+
+@unittest.skipIf(IS_WINDOWS, "no such limits")
+class StarvedMemory(FilesTest):
+    """Address space may end anywhere, also where no exception may pass."""
+    START, STEP = 64, 200  # kB
+
+    def run_within(self, kilobytes, *arguments):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (kilobytes << 10, kilobytes << 10))
+        return subprocess.run([cli_test.PROGRAM, *arguments], cwd=self.folder, capture_output=True, encoding="utf-8",
+                              timeout=cli_test.PATIENCE, preexec_fn=limit)
+
+    def least_to_start(self):
+        low, high = 0, 1 << 18
+        if self.run_within(high, "--version").returncode != OK:
+            self.skipTest("the program is of a build that takes much more, as with a sanitizer")
+        while high - low > self.START:
+            middle = (low + high) // 2
+            low, high = (low, middle) if self.run_within(middle, "--version").returncode == OK else (middle, high)
+        return high
+
+    def test_it_ends_with_a_message_and_leaves_nothing_behind(self):
+        before = set(self.content())
+        least = self.least_to_start()
+        codes = set()
+        for k in range(40):
+            limit = least + k * self.STEP
+            result = self.run_within(limit, "p.pdb", "--trajectory", "many.pdb", "--json", "a.json", "-o", "f_%02d.obj",
+                                     "--threads", "2", "--backend", "cpu", "-v", "1", "--quiet")
+            with self.subTest(kilobytes=limit, stderr=result.stderr):
+                self.assertIn(result.returncode, (OK, COMPUTE, SOME_FAILED))
+                codes.add(result.returncode)
+                if result.returncode != OK:
+                    self.assertIn("memory", result.stderr)
+                for name in set(self.content()) - before:
+                    self.assertIn(name, ("a.json", "f_00.obj", "f_01.obj", "f_02.obj"))
+                    if name != "a.json":
+                        self.assertTrue(is_closed(read_obj(self.folder / name)[2]), name)
+                    (self.folder / name).unlink()
+        self.assertIn(COMPUTE, codes)
 
 
 @unittest.skipIf(IS_WINDOWS, "descriptors have no names there")

@@ -22,7 +22,7 @@ CRAMBIN = DATA / "1CRN.pdb"
 # By Wine the program has the habits of Windows, this one has not.
 IS_WINDOWS = os.name == "nt" or os.environ.get("QUICKSES_TEST_SYSTEM") == "Windows"
 
-OK, USAGE, INPUT, OUTPUT, COMPUTE, BACKEND = range(6)
+OK, USAGE, INPUT, OUTPUT, COMPUTE, BACKEND, SOME_FAILED = range(7)
 
 PATIENCE = 150  # s: a program that takes longer hangs
 

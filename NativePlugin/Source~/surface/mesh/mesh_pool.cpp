@@ -32,7 +32,7 @@ std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
     else if (buffer->size > bytes)
       buffer->size = bytes;
     else
-      throw MemoryRefused(std::string(source_.name) + " refused " + describe_bytes(bytes) + " for the mesh");
+      throw MemoryRefused(std::string(source_.name) + " refused " + describe_bytes(bytes) + " of memory for the mesh");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   bytes_ += buffer->size;
