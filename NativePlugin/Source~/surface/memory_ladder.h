@@ -49,7 +49,7 @@ class LadderEngine : public SurfaceEngine {
             in, plan, spacings, is_beside_, history_.takes_more_than(first_alone), kind_of(in), atoms_.bytes()};
         levels_.make(frame, &course, sink, [&](Work &work, float spacing) {
           spacing_ = spacing;
-          if (work.makes_mesh) check_forecast(work, in, &plan == kMemoryPlans + kMemoryPlanCount - 1);
+          if (work.makes_mesh) check_forecast(work, in, &plan == &last_plan(in));
         });
       } catch (const AnticipatedTooLittle &) {
         course.attempts = attempts;
@@ -60,7 +60,7 @@ class LadderEngine : public SurfaceEngine {
     history_.begin(settings, spacings);
     walk(in, sink.stop_flag(), attempt);
     history_.end(milliseconds_since(start));
-    if (makes_mesh(in) && is_exact(settings)) learnt_.has_made_mesh = true;
+    if (makes_mesh(in) && is_exact(settings) && spacing_ == settings.spacing) learnt_.has_made_mesh = true;
   }
 
   qses_size_estimate estimate(const AtomSet &atoms, const Appearance &appearance, const qses_settings &settings,
@@ -146,14 +146,21 @@ class LadderEngine : public SurfaceEngine {
         levels_.forget_frames_of_lanes();       // which may rest on that
       } catch (const MemoryRefused &refused) {
         if (!will_do_better(refused, &has_dropped)) step = next_step(in, step);
-        if (step < kMemoryPlanCount) continue;
-        // The last plan takes least, but can't leave a mesh on the device: it is not where the next one should begin.
-        if (is_for_device(in.settings.delivery)) forget();
+        if (step < plan_count(in)) continue;
         name_smallest_budget(in);
         throw;
       }
     }
   }
+
+  // Those that there are for this delivery: a mesh that is in pieces can't stay on the device.
+  static size_t plan_count(const FrameInput &in) {
+    const auto makes_pieces = [](const MemoryPlan &plan) { return plan.mesh_in_pieces; };
+    const MemoryPlan *const end = kMemoryPlans + kMemoryPlanCount;
+    return static_cast<size_t>(
+        (is_for_device(in.settings.delivery) ? std::find_if(kMemoryPlans, end, makes_pieces) : end) - kMemoryPlans);
+  }
+  static const MemoryPlan &last_plan(const FrameInput &in) { return kMemoryPlans[plan_count(in) - 1]; }
 
   // Whether something was changed, or learnt, that makes the plan that was refused worth another attempt. has_dropped:
   // what was kept outside of the arena.
@@ -218,7 +225,7 @@ class LadderEngine : public SurfaceEngine {
       learnt_.step = 0;
       learnt_.is_tight = learnt_.is_lone = false;
     }
-    return learnt_.step;
+    return std::min(learnt_.step, plan_count(in) - 1);
   }
 
   void forget() {
@@ -248,9 +255,9 @@ class LadderEngine : public SurfaceEngine {
   size_t next_step(const FrameInput &in, size_t step) {
     if (budget_ == 0) executor_.arena().release();
     const uint64_t limit = executor_.arena().limit();
-    for (++step; step + 1 < kMemoryPlanCount && knows_size(); ++step)
+    for (++step; step + 1 < plan_count(in) && knows_size(); ++step)
       if (forecast(in, kMemoryPlans[step], limit) <= limit) break;
-    learnt_.step = std::min(step, kMemoryPlanCount - 1);
+    learnt_.step = std::min(step, plan_count(in) - 1);
     learnt_.share = executor_.arena().share();
     learnt_.has_made_mesh = false;
     history_.forget();
@@ -301,7 +308,7 @@ class LadderEngine : public SurfaceEngine {
   uint64_t forecast(const FrameInput &in, const MemoryPlan &plan, uint64_t limit) {
     using Counting = CountingExecutor<Executor>;
     Counting counted(executor_, facts_, limit, executor_.arena().has_budget());
-    MeshMemory<Counting> memory;
+    MeshMemory<Counting> memory(is_for_device(in.settings.delivery));
     ComponentFinder components(1);
     NoTimer timer;
     Progress progress;
@@ -319,7 +326,7 @@ class LadderEngine : public SurfaceEngine {
   }
 
   uint64_t least_bytes(const FrameInput &in) {
-    const uint64_t bytes = forecast(in, kMemoryPlans[kMemoryPlanCount - 1], kUnlimited);
+    const uint64_t bytes = forecast(in, last_plan(in), kUnlimited);
     return static_cast<uint64_t>(kMargin * static_cast<double>(bytes)) + kSpareBytes;
   }
 
@@ -376,7 +383,7 @@ class LadderEngine : public SurfaceEngine {
   bool is_beside_ = false;    // whether those of this frame are
   // Of the last computation of so many atoms with this largest inflated radius and finest spacing: where the ladder
   // ended, with how much memory, whether there was too little for what frames anticipate, or for levels beside each
-  // other, whether that did for an exact mesh; and what splits of creases found.
+  // other, whether that did for an exact mesh of that spacing; and what splits of creases found.
   struct Learnt {
     size_t atoms = 0;
     float reach = 0, spacing = 0;

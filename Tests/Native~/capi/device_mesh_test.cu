@@ -199,6 +199,39 @@ TEST(DeviceMesh, TheBudgetCoversIt) {
   EXPECT_GT(made, 0);
 }
 
+// What is said to be the least budget does; and where one is refused, that is named which would.
+TEST(DeviceMesh, TheLeastBudgetIsNamedWithTheMesh) {
+  REQUIRE_DEVICE();
+  const Atoms atoms = crambin();
+  const Context unbounded(0, 0, QSES_BACKEND_CUDA);
+  set_atoms(unbounded, atoms);
+  for (const qses_delivery delivery : {QSES_DELIVERY_HOST, QSES_DELIVERY_DEVICE, QSES_DELIVERY_BOTH}) {
+    SCOPED_TRACE(delivery);
+    qses_settings s = settings(0.4);
+    s.delivery = delivery;
+    const qses_size_estimate e = estimate_of(unbounded, s);
+    EXPECT_EQ(e.fits, 1);
+    const Context context(0, e.smallest_budget, QSES_BACKEND_CUDA);
+    set_atoms(context, atoms);
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(qses_compute(context, &s, nullptr), QSES_OK) << qses_last_error();
+      EXPECT_LE(report_of(context).work_bytes_peak, e.smallest_budget);
+    }
+    // Once more by what the refusal says, which is rounded.
+    const Context small(0, e.smallest_budget / 2, QSES_BACKEND_CUDA);
+    set_atoms(small, atoms);
+    ASSERT_EQ(qses_compute(small, &s, nullptr), QSES_OUT_OF_MEMORY);
+    const std::string message = qses_last_error();
+    double mib = 0;
+    const size_t about = message.find("about ");
+    ASSERT_NE(about, std::string::npos) << message;
+    ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf MiB", &mib), 1) << message;
+    const Context enough(0, static_cast<uint64_t>((mib + 0.05) * (1 << 20)), QSES_BACKEND_CUDA);
+    set_atoms(enough, atoms);
+    EXPECT_EQ(qses_compute(enough, &s, nullptr), QSES_OK) << qses_last_error() << " after: " << message;
+  }
+}
+
 TEST(DeviceMesh, IsNotThereUnlessAskedFor) {
   REQUIRE_DEVICE();
   const Context context(0, 0, QSES_BACKEND_CUDA);

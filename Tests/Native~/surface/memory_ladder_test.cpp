@@ -145,6 +145,23 @@ TEST(MemoryLadder, HopelessSpacingsAreRefusedAfterFramesWithoutAMesh) {
   EXPECT_NE(std::string(qses_last_error()).find("Å would do"), std::string::npos) << qses_last_error();
 }
 
+// Nor does it that a coarser level could, which is all that a frame budget leaves time for.
+TEST(MemoryLadder, HopelessSpacingsAreRefusedAfterCoarserLevels) {
+  const Context context(2);
+  set_atoms(context, crambin());
+  qses_settings s = settings(0.001);
+  s.levels[0] = 2.f;
+  s.frame_budget_ms = 60000;
+  expect_ok(qses_begin(context, &s));
+  expect_ok(qses_wait(context, -1, nullptr));
+  qses_mesh coarse;
+  qses_mesh_init(&coarse);
+  expect_ok(qses_collect(context, &coarse));
+  EXPECT_EQ(coarse.spacing, 2.f);
+  EXPECT_EQ(qses_compute(context, &s, nullptr), QSES_TOO_FINE);
+  EXPECT_NE(std::string(qses_last_error()).find("Å would do"), std::string::npos) << qses_last_error();
+}
+
 // A spacing that is named in a refusal is not refused in turn, whatever there is least of.
 TEST(HopelessSpacing, AnotherIsNamedThatWouldDo) {
   const auto refusal = [](double spacing, double available) {

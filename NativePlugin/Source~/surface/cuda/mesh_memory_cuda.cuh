@@ -27,7 +27,7 @@ struct DeviceMeshMemory {
     try {
       const DeviceGuard guard(device);
       DeviceMemory::release(memory);
-    } catch (const Error &) {  // the device is lost, and its memory with it
+    } catch (...) {  // the device is lost, and its memory with it
     }
   }
 };
@@ -131,7 +131,7 @@ class MeshMemory<CudaExecutor> {
                                MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
     const bool delivered = purpose == MeshPurpose::kDelivered;
-    void *const memory = delivered && keep_                           ? keep(executor, arrays, in_pieces)
+    void *const memory = delivered && keep_                           ? keep(executor, arrays)
                          : mesh_is_in_arena(true, purpose, in_pieces) ? executor.allocate<char>(arrays.bytes()).data
                          : delivered                                  ? host_mesh_.reserve(arrays.bytes())
                                                                       : spill(arrays.bytes());
@@ -255,9 +255,8 @@ class MeshMemory<CudaExecutor> {
     sends_triangles_ = sends_vertices_ = false;
     early_ = 0;
   }
-  // Room for a mesh that stays on the device. A budget covers it.
-  void *keep(CudaExecutor &executor, const MeshArrays &arrays, bool in_pieces) {
-    if (in_pieces) throw MemoryRefused("the mesh does not fit on the device, where it is wanted");
+  // Room for a mesh that stays on the device, as those in pieces don't. A budget covers it.
+  void *keep(CudaExecutor &executor, const MeshArrays &arrays) {
     device_mesh_.lease().give_back();
     MeshPool &pool = device_mesh_.pool();
     // Within a budget nothing is held ready that does not fit.

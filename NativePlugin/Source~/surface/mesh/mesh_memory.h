@@ -175,11 +175,15 @@ class MeshMemory;
 template <class Executor>
 class MeshMemory<CountingExecutor<Executor>> {
  public:
+  // keeps: whether a mesh that is handed out stays on the device, in memory of a pool.
+  explicit MeshMemory(bool keeps = false) : keeps_(keeps) {}
   void forget_spills() {}
   MeshMemoryView allocate_mesh(CountingExecutor<Executor> &executor, size_t vertices, size_t triangles,
                                const MeshShape &shape, MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
-    if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces)) executor.template allocate<char>(arrays.bytes());
+    const bool is_pooled = keeps_ && purpose == MeshPurpose::kDelivered;
+    if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces))
+      executor.template allocate<char>(is_pooled ? MeshPool::size_for(arrays.bytes()) : arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, Executor::kIsCuda && in_pieces, nullptr);
   }
   template <class T>
@@ -191,6 +195,9 @@ class MeshMemory<CountingExecutor<Executor>> {
   void note_triangles(CountingExecutor<Executor> &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose, size_t) {}
   void bring_vertices(CountingExecutor<Executor> &, const MeshMemoryView &) {}
+
+ private:
+  const bool keeps_;
 };
 
 }  // namespace quickses

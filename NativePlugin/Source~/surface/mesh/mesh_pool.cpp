@@ -23,8 +23,8 @@ std::unique_ptr<MeshBuffer> MeshPool::take(size_t bytes) {
   if (buffer) return buffer;
   buffer = std::make_unique<MeshBuffer>();
   if (bytes == 0) return buffer;
-  // With head room, so that a trajectory soon stops growing; if that is refused without, then at the cost of spares.
-  buffer->size = GrowingBuffer<HostMemory>::size_for(bytes);
+  // If the head room is refused then without; then at the cost of spares.
+  buffer->size = size_for(bytes);
   while (!(buffer->memory = source_.acquire(buffer->size))) {
     const std::unique_ptr<MeshBuffer> spare = buffer->size == bytes ? oldest_spare() : nullptr;
     if (spare)
@@ -112,7 +112,7 @@ uint64_t MeshPool::bytes() const {
 
 uint64_t MeshPool::bytes_with(size_t bytes) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return best_spare(bytes) != spares_.cend() ? bytes_ : bytes_ + GrowingBuffer<HostMemory>::size_for(bytes);
+  return best_spare(bytes) != spares_.cend() ? bytes_ : bytes_ + size_for(bytes);
 }
 
 void MeshPool::count_numbers(int64_t bytes) {

@@ -55,6 +55,8 @@ class MeshPool {
   // Nobody will take any more: spares are released, and what is given back from now on.
   void close() noexcept;
 
+  // What a mesh of so many bytes takes: with head room, so that a trajectory soon stops growing.
+  static size_t size_for(size_t bytes) { return GrowingBuffer<HostMemory>::size_for(bytes); }
   uint64_t bytes() const;                   // of spare buffers and of those that are out
   uint64_t bytes_with(size_t bytes) const;  // once there is room for such a mesh as well
   void count_numbers(int64_t bytes);
@@ -90,7 +92,7 @@ class MeshLease {
   size_t size() const { return buffer_ ? buffer_->size : 0; }
   // On a device: streams read the memory until the mark. One thread at a time.
   void note_readers(std::shared_ptr<const StreamMark> readers) const { buffer_->readers = std::move(readers); }
-  // Who writes there has to be held back until then; null: by nobody. Are forgotten.
+  // Who writes there has to be held back until then; null: by nobody. The lease forgets them.
   std::shared_ptr<const StreamMark> take_readers() { return std::move(buffer_->readers); }
   // What there is to say about a mesh besides its arrays.
   enum Numbers { kComponents, kAtomAreas };
