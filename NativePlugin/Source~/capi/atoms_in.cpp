@@ -31,10 +31,11 @@ constexpr float kLargestRadius = 100.f;
 
 }  // namespace
 
-void check_layout(const float *positions, size_t stride, size_t count) {
+void check_layout(const float *positions, size_t stride, size_t count, const char *argument) {
   if (count == 0) return;
   require(positions, "positions");
-  if (count > 0x7fffffffu) invalid("count is " + std::to_string(count) + ": at most 2147483647 atoms are possible");
+  if (count > 0x7fffffffu)
+    invalid(std::string(argument) + " is " + std::to_string(count) + ": at most 2147483647 are possible");
   if (stride != 0 && (stride < 12 || stride % 4 != 0))
     invalid("stride is " + std::to_string(stride) + ": it must be 0, or a multiple of 4 that is at least 12");
   if (stride != 0 && count - 1 > static_cast<size_t>(PTRDIFF_MAX) / stride)

@@ -10,7 +10,8 @@
 
 namespace quickses {
 
-void check_layout(const float *positions, size_t stride, size_t count);
+// argument: what the caller knows the count as.
+void check_layout(const float *positions, size_t stride, size_t count, const char *argument = "count");
 
 // How large they are.
 AtomRadii check_radii(const float *radii, size_t count);

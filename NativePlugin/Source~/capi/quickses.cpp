@@ -85,6 +85,37 @@ qses_backend choose_backend(qses_backend asked, int device, qses_backend_descrip
   return QSES_BACKEND_CPU;
 }
 
+#if defined(QUICKSES_HAS_CUDA)
+void begin_on_gpu(qses_context &context, const qses_context_options &options, const quickses::WorkerThreads &threads) {
+  context.job = std::make_unique<quickses::SurfaceJob>(
+      quickses::make_cuda_engine(options.device, threads, options.memory_budget), threads.in_background);
+  context.copy_threads = std::make_unique<quickses::CpuThreads>(
+      std::min(quickses::CpuThreads(threads).count(), quickses::kMostCopyThreads));
+  // Another context may have been loading the kernels when this one looked.
+  context.description.preparing = 0;
+  context.description.reason[0] = 0;
+}
+#endif
+
+// The engine and the threads of a context, whose back end is chosen.
+void begin(qses_context &context, const qses_context_options &options) {
+  const quickses::WorkerThreads threads(options.threads, options.background != 0);
+#if defined(QUICKSES_HAS_CUDA)
+  if (context.backend == QSES_BACKEND_CUDA) {
+    try {
+      return begin_on_gpu(context, options, threads);
+    } catch (const quickses::Error &error) {  // others may have all of its memory
+      if (options.backend != QSES_BACKEND_AUTO) throw;
+      context.backend = choose_backend(QSES_BACKEND_CPU, 0, &context.description);
+      std::snprintf(context.description.reason, sizeof context.description.reason, "%s", error.what());
+    }
+  }
+#endif
+  context.job = std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(threads, options.memory_budget),
+                                                       threads.in_background);
+  quickses::name_cpu(quickses::CpuThreads(threads).at_a_time(), &context.description);
+}
+
 // A new set of as many atoms, of the radii of the one before.
 // copy_into(atoms) fills them in, and returns their box.
 template <class CopyInto>
@@ -159,28 +190,11 @@ qses_status qses_context_create(const qses_context_options *options, qses_contex
     check_backend(o.backend);
     if (o.threads > 4096) invalid("options.threads is " + std::to_string(o.threads) + ": at most 4096");
     quickses::stay_loaded();  // contexts leave threads behind
-    const bool in_background = o.background != 0;
-    const quickses::WorkerThreads threads(o.threads, in_background);
     auto made = std::make_unique<qses_context>();
     made->backend = choose_backend(o.backend, o.device, &made->description);
     if (!made->description.available)
       throw quickses::Error(QSES_BACKEND_UNAVAILABLE, std::string("CUDA can't be used: ") + made->description.reason);
-#if defined(QUICKSES_HAS_CUDA)
-    if (made->backend == QSES_BACKEND_CUDA) {
-      made->job = std::make_unique<quickses::SurfaceJob>(quickses::make_cuda_engine(o.device, threads, o.memory_budget),
-                                                         in_background);
-      const unsigned there_are = o.threads ? o.threads : quickses::hardware_threads();
-      made->copy_threads = std::make_unique<quickses::CpuThreads>(std::min(there_are, quickses::kMostCopyThreads));
-      // Another context may have been loading the kernels when this one looked.
-      made->description.preparing = 0;
-      made->description.reason[0] = 0;
-    }
-#endif
-    if (!made->job) {
-      made->job =
-          std::make_unique<quickses::SurfaceJob>(quickses::make_cpu_engine(threads, o.memory_budget), in_background);
-      quickses::name_cpu(quickses::CpuThreads(threads).at_a_time(), &made->description);
-    }
+    begin(*made, o);
     *context = made.release();
   });
 }
@@ -231,7 +245,7 @@ qses_status qses_set_positions_indexed(qses_context *context, const float *posit
   return guarded([&] {
     require(context, "context");
     check_atom_count(*context, count, "qses_set_positions_indexed");
-    quickses::check_layout(positions, stride, position_count);
+    quickses::check_layout(positions, stride, position_count, "position_count");
     quickses::check_indices(indices, count, position_count);
     context->atoms = next_frame(*context, [&](quickses::Sphere *atoms) {
       return quickses::copy_indexed_atoms(positions, stride, indices, context->radii.data(), count, atoms,

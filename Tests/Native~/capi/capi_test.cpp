@@ -287,6 +287,8 @@ TEST(Atoms, OneIsSingular) {
   EXPECT_STREQ(qses_last_error(), "count is 2 but the context has 1 atom");
   EXPECT_EQ(qses_set_positions_indexed(context, xyz, 0, 1, &index, 1), QSES_INVALID_ARGUMENT);
   EXPECT_STREQ(qses_last_error(), "indices[0] is 1 but there is 1 position");
+  EXPECT_EQ(qses_set_positions_indexed(context, xyz, 0, size_t(1) << 31, &index, 1), QSES_INVALID_ARGUMENT);
+  EXPECT_STREQ(qses_last_error(), "position_count is 2147483648: at most 2147483647 are possible");
 }
 
 TEST(LastError, NumbersDifferFromTheLimitThatTheyExceed) {

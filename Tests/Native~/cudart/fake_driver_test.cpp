@@ -267,6 +267,41 @@ TEST_P(FailingDriver, EveryCallMayFailAndTheNextMayNot) {
 }
 INSTANTIATE_TEST_SUITE_P(Errors, FailingDriver, testing::Values(-2, 2, 46, -201, -999));  // cudaError_t
 
+// Others may have all of a GPU's memory: who leaves the choice to the library gets a context all the same.
+class FullDevice : public FailingDriver {};
+
+TEST_P(FullDevice, IsLeftToOthersWhereNoneIsAskedFor) {
+  qses_context *context = nullptr;
+  ASSERT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK) << qses_last_error();  // what is done but once in a process
+  qses_context_destroy(context);
+  fail_after(-1, 0);
+  ASSERT_EQ(create(QSES_BACKEND_CUDA, &context), QSES_OK) << qses_last_error();
+  const int calls = fail_after(-1, 0);
+  qses_context_destroy(context);
+  int on_the_cpu = 0;
+  for (int good = 0; good < calls; ++good) {
+    SCOPED_TRACE(good);
+    fail_after(good, GetParam());
+    const qses_status cuda = create(QSES_BACKEND_CUDA, &context);
+    qses_context_destroy(context);
+    fail_after(good, GetParam());
+    ASSERT_EQ(create(QSES_BACKEND_AUTO, &context), QSES_OK) << qses_last_error();
+    fail_after(-1, 0);
+    qses_backend backend{};
+    qses_backend_description description = empty_description();
+    ASSERT_EQ(qses_context_info(context, &backend, &description), QSES_OK);
+    if (cuda != QSES_OK) EXPECT_EQ(backend, QSES_BACKEND_CPU);
+    EXPECT_EQ(std::string(description.reason).empty(), backend == QSES_BACKEND_CUDA) << description.reason;
+    EXPECT_EQ(description.available, 1);
+    on_the_cpu += backend == QSES_BACKEND_CPU ? 1 : 0;
+    set_atoms(context, water());
+    EXPECT_EQ(qses_compute(context, nullptr, nullptr), QSES_OK) << qses_last_error();
+    qses_context_destroy(context);
+  }
+  EXPECT_GT(on_the_cpu, 0);
+}
+INSTANTIATE_TEST_SUITE_P(Errors, FullDevice, testing::Values(2, 46));
+
 // The device is lost: Windows ended a kernel (702), the driver was restarted under the process (719), or other code in
 // it has reset the device (709); 999 is what Windows' drivers call most of them.
 class LostDevice : public FailingDriver {};

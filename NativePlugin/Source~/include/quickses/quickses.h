@@ -75,11 +75,11 @@
  *   outside (pthread_cancel, TerminateThread): qses_cancel is there for that.
  *   On Linux, threads of the library inherit the processors that the thread is bound to which first computes in a
  *   context, or begins a job there, and are no more than these: let it be one that is not bound. A program of OpenMP
- * with OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. Nor are they more than the processors
- * that the control groups of the process, as of a container, have time for. qses_context_info tells how many there are
- * where the context is made. After a fork while nothing of the library ran, the child may make contexts on the CPU
- * and compute in them, and in those that were made before, with its calling thread alone; contexts that had jobs
- * (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
+ *   with OMP_PROC_BIND or OMP_PLACES has its main thread bound to one processor. Nor are they more than the processors
+ *   that the control groups of the process, as of a container, have time for. qses_context_info tells how many there
+ *   are where the context is made. After a fork while nothing of the library ran, the child may make contexts on the
+ *   CPU and compute in them, and in those that were made before, with its calling thread alone; contexts that had jobs
+ *   (qses_begin) before must be neither used nor destroyed there. Where CUDA was used, no child can use it.
  */
 #ifndef QUICKSES_QUICKSES_H
 #define QUICKSES_QUICKSES_H
@@ -131,7 +131,7 @@ typedef enum qses_status {
 typedef int32_t qses_bool;
 
 typedef enum qses_backend {
-  QSES_BACKEND_AUTO = 0, /* CUDA if a usable device is present, else the CPU */
+  QSES_BACKEND_AUTO = 0, /* CUDA if a usable device is present that has room for a context, else the CPU */
   QSES_BACKEND_CUDA = 1,
   QSES_BACKEND_CPU = 2
 } qses_backend;
@@ -471,7 +471,7 @@ typedef struct qses_mesh {
   const float *texcoords; /* V x 2, tightly packed, or NULL if not asked for */
   uint32_t vertex_bytes;  /* INTERLEAVED (24) and COMPACT (16), wherever the mesh is: bytes from one vertex to the next
                              in the vertices that positions points to, V * vertex_bytes bytes of memory. SEPARATE: 0,
-                             positions and normals are tightly packed */
+                             positions and normals are tightly packed. 0 for an empty mesh */
   uint32_t reserved;      /* 0 */
   const uint32_t *owners; /* V, the atom whose van der Waals surface is nearest to the vertex; with GRID, to where it
                              was before it was smoothed. NULL with settings.without_owners */
@@ -481,7 +481,8 @@ typedef struct qses_mesh {
   float bounds_max[3];
   float spacing;                    /* Å, of the level */
   uint32_t level;                   /* 0 is the coarsest */
-  uint32_t level_count;             /* levels there are with the settings: level_count - 1 is the finest */
+  uint32_t level_count;             /* levels there are with the settings, of qses_compute one: level_count - 1 is the
+                                       finest */
   uint32_t component_count;         /* 0 if not asked for, or if there is no surface */
   const qses_component *components; /* NULL if there are none; in the order of their first vertices. Those of the whole
                                        surface where atoms are hidden. Their areas and volumes add up to those of
@@ -496,7 +497,7 @@ typedef struct qses_mesh {
                                stands for on the other side of its crease, in ascending order. With these taken for one
                                the mesh is closed. NULL if there are none */
   uint64_t repeated_count;
-  qses_bool has_texcoords; /* whether vertices have texture coordinates, wherever the mesh is */
+  qses_bool has_texcoords; /* whether vertices have texture coordinates, wherever the mesh is; 0 for an empty one */
   uint32_t reserved2;      /* 0 */
 } qses_mesh;
 
@@ -674,8 +675,9 @@ typedef struct qses_device_mesh {
   uint32_t struct_size; /* set by qses_device_mesh_init */
   int32_t device;       /* CUDA ordinal */
   void *stream;         /* the cudaStream_t of the context that wrote the mesh */
-  qses_mesh mesh;       /* as qses_collect gives it, but positions, normals, colors, texcoords, owners, patches and
-                           indices point to memory of the device; components, if any, to host memory */
+  qses_mesh mesh;       /* as qses_collect gives it, but all arrays of vertices and triangles (positions, normals,
+                           colors, texcoords, owners, patches, indices, component_ids, repeated) are in memory of the
+                           device; components and atom_areas, if any, in host memory */
 } qses_device_mesh;
 
 /* Empty view with struct_size set, its own and that of its mesh, which both stay as they are. NULL is ignored. */
