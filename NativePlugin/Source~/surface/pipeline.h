@@ -149,7 +149,7 @@ void prepare_frame(Work &work, const FrameInput &in) {
                           work.lattice.center_z,    work.parameters.scale, work.parameters.probe};
   });
   executor.end_lending();
-  if (in.settings.surface == QSES_SURFACE_GAUSSIAN) return;
+  if (is_gaussian) return;
   remove_contained_atoms(executor, work.atoms, work.parameters.max_radius);
   if (in.settings.method != QSES_METHOD_EXACT) return;
   const SolventFeatures features = list_features(work);
@@ -217,8 +217,8 @@ MeshMemoryView measure_and_cut(Work &work, MeshMemoryView mesh) {
     work.timer.begin("components");
     // Along the normals also of balls, whose atoms know area and volume better, but not of each component.
     const bool bent = work.settings.method != QSES_METHOD_GRID;
-    const MeshComponents components =
-        work.components.find(executor, mesh, work.parameters.spacing, bent, &work.report->unplaced_vertices);
+    const MeshComponents components = work.components.find(executor, mesh, work.parameters.spacing, bent,
+                                                           &work.report->unplaced_vertices, work.progress.stop_flag());
     mesh.components = components.list;
     measures = components.total;
   } else {

@@ -43,11 +43,12 @@ std::vector<qses_component> components_of(Mesh &m, unsigned threads = 2, bool re
   ComponentMemory memory;
   const MeshView view = view_of(m, reversed);
   const MeshCounts counts{m.vertex_count(), m.triangle_count()};
-  const uint32_t extra = 37;
-  uint64_t brought = 0;
-  const MeshComponents found = find_components(executor, view, counts, spacing, false, memory, &extra, &brought);
-  expect_measures(found.total, measure(executor, view, counts, false, kOrigin));
-  EXPECT_EQ(brought, counts.triangles > 0 ? extra : 0);
+  const uint32_t unplaced = 37;
+  uint64_t found_unplaced = 0;
+  const MeshComponents found =
+      find_components(executor, view, counts, spacing, false, memory, &unplaced, &found_unplaced);
+  expect_measures(found.total, sum_mesh(executor, measured_sums(view, counts, false, kOrigin, nullptr), nullptr));
+  EXPECT_EQ(found_unplaced, counts.triangles > 0 ? unplaced : 0);
   return {found.list.begin(), found.list.end()};
 }
 
@@ -202,6 +203,18 @@ TEST(Components, KeepTheirDigits) {
 TEST(Components, OfNothing) {
   Mesh m;
   EXPECT_TRUE(components_of(m).empty());
+}
+
+// As a mesh that did not fit on the GPU may be large, and its job be cancelled.
+TEST(HostComponents, GiveUpWhereTheyAreToldToStop) {
+  Mesh m = mesh_shapes::sphere(7);
+  const MeshCounts counts{m.vertex_count(), m.triangle_count()};
+  HostComponents finder(2);
+  ComponentMemory memory;
+  std::atomic<bool> stop{true};
+  EXPECT_THROW(finder.find(view_of(m), counts, 0.5f, false, memory, stop), Cancelled);
+  stop = false;
+  EXPECT_EQ(finder.find(view_of(m), counts, 0.5f, false, memory, stop).list.size, 1u);
 }
 
 }  // namespace

@@ -119,8 +119,9 @@ void compare(const std::vector<Atom> &atoms, float probe, float spacing) {
     for (int d = 0; d < 3; ++d) ASSERT_NEAR(device_starts[v][d], host_starts[v][d], 1e-5f) << v;
 
   const double middle[3] = {};
-  const Measures found = measure(executor, view, counts, true, middle);
-  const Measures plain = measure(serial.executor, serial.view(expected), serial.counts, true, middle);
+  const Measures found = sum_mesh(executor, measured_sums(view, counts, true, middle, nullptr), nullptr);
+  const Measures plain =
+      sum_mesh(serial.executor, measured_sums(serial.view(expected), serial.counts, true, middle, nullptr), nullptr);
   EXPECT_NEAR(found.sums.area, plain.sums.area, 1e-9 * plain.sums.area);
   EXPECT_NEAR(found.sums.volume, plain.sums.volume, 1e-9 * plain.sums.volume);
   EXPECT_NEAR(found.sums.flat_area, plain.sums.flat_area, 1e-9 * plain.sums.area);

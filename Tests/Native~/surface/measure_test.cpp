@@ -30,7 +30,8 @@ Flat measure_mesh(Mesh &mesh, unsigned threads = 2, bool reversed = false) {
   view.positions = mesh.positions.data();
   view.indices = mesh.indices.data();
   view.reversed = reversed;
-  const Measures m = measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, false, kOrigin);
+  const MeshCounts counts{mesh.vertex_count(), mesh.triangle_count()};
+  const Measures m = sum_mesh(executor, measured_sums(view, counts, false, kOrigin, nullptr), nullptr);
   EXPECT_EQ(m.sums.area, m.sums.flat_area);
   EXPECT_EQ(m.sums.volume, m.sums.flat_volume);
   return {m.sums.area, m.sums.volume, m.bounds};
@@ -112,7 +113,8 @@ TriangleSums measure_bent(Mesh &mesh, const std::vector<float> &normals, const s
   if (!second.empty()) view.second_normals = const_cast<float *>(second.data());
   view.indices = mesh.indices.data();
   view.reversed = reversed;
-  return measure(executor, view, MeshCounts{mesh.vertex_count(), mesh.triangle_count()}, true, kOrigin).sums;
+  const MeshCounts counts{mesh.vertex_count(), mesh.triangle_count()};
+  return sum_mesh(executor, measured_sums(view, counts, true, kOrigin, nullptr), nullptr).sums;
 }
 
 // Four triangles at a time measure what each of them does, to the last bit: crests, corners that face away, and
@@ -237,12 +239,12 @@ TEST(Measure, BringsAnotherNumberAlong) {
   view.positions = m.positions.data();
   view.indices = m.indices.data();
   const MeshCounts counts{m.vertex_count(), m.triangle_count()};
-  const uint32_t extra = 7;
+  const uint32_t unplaced = 7;
   for (unsigned threads : {1u, 3u}) {
     CpuExecutor executor(threads);
     uint64_t with_bounds = 0, with_measures = 0;
-    find_bounds(executor, view, counts, &extra, &with_bounds);
-    measure(executor, view, counts, false, kOrigin, &extra, &with_measures);
+    sum_mesh(executor, bound_sums(view, counts, &unplaced), &with_bounds);
+    sum_mesh(executor, measured_sums(view, counts, false, kOrigin, &unplaced), &with_measures);
     EXPECT_EQ(with_bounds, 7u);
     EXPECT_EQ(with_measures, 7u);
   }

@@ -24,6 +24,7 @@ class Progress {
     last_ = -1;
     enter(0, 0);
   }
+  const std::atomic<bool> *stop_flag() const { return stop_; }  // of the computation
   // Fractions reported from now on are those of the part from begin to end of the whole.
   void enter(double begin, double end) {
     begin_ = begin;

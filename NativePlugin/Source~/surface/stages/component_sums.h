@@ -38,7 +38,7 @@ struct ComponentSums {
   ExactSum facing;                             // facing_area(), where normals bend the triangles
   uint32_t most[6];                            // greatest x, y, z and -x, -y, -z, as ordered bits
   float first[3];                              // the first vertex
-  uint32_t extra;                              // of the first component: what comes along
+  uint32_t unplaced;                           // of the first component: what comes along
 };
 
 // Rests are multiples of 1 / this.
@@ -97,14 +97,14 @@ struct NumberComponents {
   MeshView mesh;
   const uint32_t *labels;
   ComponentNumbers number_of;
-  const uint32_t *extra;
+  const uint32_t *unplaced;
   ComponentSums *sums;
   QSES_HOST_DEVICE void operator()(size_t v) const {
     const uint32_t vertex = static_cast<uint32_t>(v), number = number_of(labels[v]);
     if (mesh.component_ids) mesh.component_id(vertex) = number;
     if (labels[v] != vertex) return;
     for (int d = 0; d < 3; ++d) sums[number].first[d] = mesh.position(vertex)[d];
-    if (v == 0 && extra) sums->extra = *extra;
+    if (v == 0 && unplaced) sums->unplaced = *unplaced;
   }
 };
 

@@ -39,11 +39,12 @@ struct MeshComponents {
   Measures total;
 };
 
-// If the mesh has room for their numbers, vertices get them. extra: as in find_bounds (measure.h). Waits.
+// If the mesh has room for their numbers, vertices get them. unplaced, unplaced_found: the mesh's number of
+// vertices without a feature, in memory of the back end, and where it goes; or nullptr. Waits.
 template <class Executor>
 MeshComponents find_components(Executor &executor, const MeshView &mesh, const MeshCounts &counts, float spacing,
-                               bool bent, ComponentMemory &memory, const uint32_t *extra = nullptr,
-                               uint64_t *extra_value = nullptr) {
+                               bool bent, ComponentMemory &memory, const uint32_t *unplaced = nullptr,
+                               uint64_t *unplaced_found = nullptr) {
   if (counts.triangles == 0) return {};
   const auto mark = executor.arena().mark();
   const size_t n = counts.vertices;
@@ -58,7 +59,7 @@ MeshComponents find_components(Executor &executor, const MeshView &mesh, const M
   const Span<ComponentSums> found = memory.sums(count);
   const Span<ComponentSums> sums = Executor::kIsCuda ? executor.template allocate<ComponentSums>(count) : found;
   executor.fill(sums, 0);
-  executor.for_each(n, NumberComponents{mesh, labels.data, number_of, extra, sums.data});
+  executor.for_each(n, NumberComponents{mesh, labels.data, number_of, unplaced, sums.data});
   const double h = static_cast<double>(spacing), units = rest_units(counts.triangles);
   const size_t chunk = reduce_chunk(counts.triangles);
   executor.template for_each_brick<ChunkSums>(
@@ -82,7 +83,7 @@ MeshComponents find_components(Executor &executor, const MeshView &mesh, const M
     }
   }
   components.list = {list.data, count};
-  if (extra && extra_value && count > 0) *extra_value = found[0].extra;
+  if (unplaced && unplaced_found && count > 0) *unplaced_found = found[0].unplaced;
   return components;
 }
 
@@ -92,16 +93,17 @@ class ComponentFinder {
  public:
   // threads: used only for meshes that left the device.
   explicit ComponentFinder(const WorkerThreads &threads) : on_host_(threads) {}
-  // unplaced: gets the mesh's number of them, if it has one.
+  // unplaced: gets the mesh's number of them, if it has one. stop: for the CPU's threads.
   template <class Executor>
-  MeshComponents find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent, uint64_t *unplaced) {
+  MeshComponents find(Executor &executor, const MeshMemoryView &mesh, float spacing, bool bent, uint64_t *unplaced,
+                      const std::atomic<bool> *stop) {
     const MeshCounts counts{mesh.vertices, mesh.triangles};
     if (!mesh.in_pieces)
       return find_components(executor, mesh.view, counts, spacing, bent, memory_, mesh.unplaced, unplaced);
     if (Executor::kCounts) return {};
     if (mesh.unplaced) *unplaced = executor.fetch(mesh.unplaced);
     executor.wait();
-    return on_host_.find(mesh.view, counts, spacing, bent, memory_);
+    return on_host_.find(mesh.view, counts, spacing, bent, memory_, *stop);
   }
   // Of each component whether it is no cavity; valid until the next call.
   Span<const uint8_t> outer(Span<const qses_component> components) {

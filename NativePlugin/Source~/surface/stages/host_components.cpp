@@ -11,8 +11,9 @@ HostComponents::HostComponents(const WorkerThreads &threads) : threads_(threads)
 HostComponents::~HostComponents() = default;
 
 MeshComponents HostComponents::find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
-                                    ComponentMemory &memory) {
+                                    ComponentMemory &memory, const std::atomic<bool> &stop) {
   if (!executor_) executor_ = std::make_unique<CpuExecutor>(threads_);
+  const CpuExecutor::RunScope run_scope(*executor_, stop);
   executor_->arena().reset();
   return find_components(*executor_, mesh, counts, spacing, bent, memory);
 }

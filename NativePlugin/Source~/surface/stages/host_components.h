@@ -7,6 +7,7 @@
 
 #include "quickses/quickses.h"
 
+#include <atomic>
 #include <memory>
 
 namespace quickses {
@@ -21,9 +22,10 @@ class HostComponents {
   explicit HostComponents(const WorkerThreads &threads);
   ~HostComponents();
 
-  // As find_components. Its threads and its work memory stay for the next call.
-  MeshComponents find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent,
-                      ComponentMemory &memory);
+  // As find_components; gives up where it is told to stop, and throws Cancelled. Its threads and its work memory stay
+  // for the next call.
+  MeshComponents find(const MeshView &mesh, const MeshCounts &counts, float spacing, bool bent, ComponentMemory &memory,
+                      const std::atomic<bool> &stop);
   uint64_t bytes() const;  // of work memory
 
  private:

@@ -40,14 +40,14 @@ template <bool kMeasured>
 struct MeshSums : std::conditional_t<kMeasured, TriangleSums, Nothing> {
   using Triangles = std::conditional_t<kMeasured, TriangleSums, Nothing>;
   uint32_t low[3] = {~uint32_t(0), ~uint32_t(0), ~uint32_t(0)}, high[3] = {0, 0, 0};  // as ordered bits
-  uint64_t extra = 0;
+  uint64_t unplaced = 0;
   QSES_FN MeshSums &operator+=(const MeshSums &other) {
     Triangles::operator+=(other);
     for (int d = 0; d < 3; ++d) {
       low[d] = other.low[d] < low[d] ? other.low[d] : low[d];
       high[d] = other.high[d] > high[d] ? other.high[d] : high[d];
     }
-    extra += other.extra;
+    unplaced += other.unplaced;
     return *this;
   }
 };
@@ -58,7 +58,7 @@ struct LoadMeshSums {
   MeshView mesh;
   size_t vertices, triangles;
   MeasureTriangle measure;
-  const uint32_t *extra;
+  const uint32_t *unplaced;
   size_t items() const { return kMeasured ? std::max(vertices, triangles) : vertices; }
   QSES_FN MeshSums<kMeasured> operator()(size_t i) const {
     MeshSums<kMeasured> s;
@@ -67,7 +67,7 @@ struct LoadMeshSums {
     if constexpr (kMeasured) {
       if (i < triangles) static_cast<TriangleSums &>(s) = measure(i);
     }
-    if (i == 0 && extra) s.extra = *extra;
+    if (i == 0 && unplaced) s.unplaced = *unplaced;
     return s;
   }
   // On the CPU.
@@ -97,16 +97,19 @@ struct LoadMeshSums {
         sum->high[d] = std::max(sum->high[d], ordered_bits(high[d]));
       }
     }
-    if (begin == 0 && extra) sum->extra += *extra;
+    if (begin == 0 && unplaced) sum->unplaced += *unplaced;
   }
 };
 
-inline LoadMeshSums<false> bound_sums(const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra) {
-  return {mesh, counts.vertices, 0, {}, extra};
+// unplaced: how many vertices are, in memory of the back end, which comes along so that nobody waits for it alone;
+// nullptr: none.
+inline LoadMeshSums<false> bound_sums(const MeshView &mesh, const MeshCounts &counts, const uint32_t *unplaced) {
+  return {mesh, counts.vertices, 0, {}, unplaced};
 }
+// bent: along the exact normals that the vertices have. origin: a place near the mesh, from which volumes are counted.
 inline LoadMeshSums<true> measured_sums(const MeshView &mesh, const MeshCounts &counts, bool bent, const double *origin,
-                                        const uint32_t *extra) {
-  return {mesh, counts.vertices, counts.triangles, {mesh, {origin[0], origin[1], origin[2]}, bent}, extra};
+                                        const uint32_t *unplaced) {
+  return {mesh, counts.vertices, counts.triangles, {mesh, {origin[0], origin[1], origin[2]}, bent}, unplaced};
 }
 
 template <bool kMeasured>
@@ -120,31 +123,22 @@ Bounds bounds_of(const MeshSums<kMeasured> &found) {
   return bounds;
 }
 
+// unplaced: gets their number; may be nullptr. Waits.
 template <class Executor, bool kMeasured>
-Measures sum_mesh(Executor &executor, const LoadMeshSums<kMeasured> &load, uint64_t *extra_value) {
+Measures sum_mesh(Executor &executor, const LoadMeshSums<kMeasured> &load, uint64_t *unplaced) {
   Measures m = {};
   if (load.vertices == 0) return m;
   const auto found = executor.template reduce<MeshSums<kMeasured>>(load.items(), load);
-  if (extra_value) *extra_value = found.extra;
+  if (unplaced) *unplaced = found.unplaced;
   if constexpr (kMeasured) m.sums = found;
   m.bounds = bounds_of(found);
   return m;
 }
 
-// Box of the vertices. A number in the back end's memory, if there is one, comes along, so that nobody waits for it
-// alone. Waits.
+// Box of the vertices. Waits.
 template <class Executor>
-Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts, const uint32_t *extra = nullptr,
-                   uint64_t *extra_value = nullptr) {
-  return sum_mesh(executor, bound_sums(mesh, counts, extra), extra_value).bounds;
-}
-
-// Area and volume as well. bent: along the exact normals that the vertices have. origin: a place near the mesh, from
-// which volumes are counted. Brings an extra number along, too. Waits.
-template <class Executor>
-Measures measure(Executor &executor, const MeshView &mesh, const MeshCounts &counts, bool bent, const double *origin,
-                 const uint32_t *extra = nullptr, uint64_t *extra_value = nullptr) {
-  return sum_mesh(executor, measured_sums(mesh, counts, bent, origin, extra), extra_value);
+Bounds find_bounds(Executor &executor, const MeshView &mesh, const MeshCounts &counts) {
+  return sum_mesh(executor, bound_sums(mesh, counts, nullptr), nullptr).bounds;
 }
 
 inline void note_measures(const TriangleSums &sums, qses_report *report) {
@@ -166,7 +160,7 @@ void settle_parts(const ComingSums &coming, Bounds *bounds, qses_report *report)
   MeshSums<kMeasured> sum{};
   for (size_t k = 0; k < coming.count; ++k) sum += static_cast<const MeshSums<kMeasured> *>(coming.parts)[k];
   *bounds = bounds_of(sum);
-  report->unplaced_vertices = sum.extra;
+  report->unplaced_vertices = sum.unplaced;
   if constexpr (kMeasured) note_measures(sum, report);
 }
 // When something has been waited for.
