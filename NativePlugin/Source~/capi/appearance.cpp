@@ -8,7 +8,6 @@
 using quickses::Appearance;
 using quickses::check_atom_count;
 using quickses::guarded;
-using quickses::is_sole_holder;
 using quickses::require;
 
 namespace {
@@ -18,12 +17,7 @@ template <class Change>
 void change_appearance(qses_context *context, size_t count, const char *function, const Change &change) {
   require(context, "context");
   check_atom_count(*context, count, function);
-  std::shared_ptr<Appearance> next;
-  for (const std::shared_ptr<Appearance> &set : context->appearance_pool)
-    if (is_sole_holder(set)) {
-      next = set;
-      break;
-    }
+  std::shared_ptr<Appearance> next = quickses::find_unheld(context->appearance_pool);
   if (!next) {
     next = std::make_shared<Appearance>();
     context->appearance_pool.push_back(next);

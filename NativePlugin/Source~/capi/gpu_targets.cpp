@@ -52,7 +52,6 @@ bool try_submit(qses_gpu_target *target, const qses_kept_mesh &kept, const qses_
   quickses::require_kept(kept);
   const std::shared_ptr<const quickses::DeviceMesh> &mesh = kept.held.on_device;
   if (!mesh) throw quickses::Error(QSES_NO_RESULT, "the mesh that is kept is not on a device (settings.delivery)");
-  target->held->check(*mesh, buffers);
   check_graphics(buffers.graphics);
   quickses::Submission submission;
   submission.mesh = mesh;

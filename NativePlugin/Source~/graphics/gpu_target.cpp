@@ -15,6 +15,15 @@ void check_room(const char *of, uint64_t capacity, uint64_t needed) {
             std::to_string(needed));
 }
 
+void check_buffers(const DeviceMesh &mesh, const qses_gpu_buffers &buffers) {
+  if (!buffers.vertices) invalid("buffers.vertices is 0");
+  if (!buffers.indices) invalid("buffers.indices is 0");
+  if (mesh.shape.layout == QSES_VERTICES_SEPARATE && mesh.view.mesh.vertex_count > 0)
+    invalid("the mesh was made with settings.vertex_layout SEPARATE: a buffer takes INTERLEAVED or COMPACT");
+  check_room("vertex", buffers.vertex_capacity, mesh.view.mesh.vertex_count);
+  check_room("index", buffers.index_capacity, 3 * uint64_t(mesh.view.mesh.triangle_count));
+}
+
 }  // namespace
 
 void GpuTarget::set_look(std::shared_ptr<const Appearance> look, size_t atom_count) {
@@ -23,21 +32,13 @@ void GpuTarget::set_look(std::shared_ptr<const Appearance> look, size_t atom_cou
   look_atoms_ = atom_count;
 }
 
-void GpuTarget::check(const DeviceMesh &mesh, const qses_gpu_buffers &buffers) const {
-  if (!buffers.vertices) invalid("buffers.vertices is 0");
-  if (!buffers.indices) invalid("buffers.indices is 0");
-  if (mesh.shape.layout == QSES_VERTICES_SEPARATE && mesh.view.mesh.vertex_count > 0)
-    invalid("the mesh was made with settings.vertex_layout SEPARATE: a buffer takes INTERLEAVED or COMPACT");
-  check_room("vertex", buffers.vertex_capacity, mesh.view.mesh.vertex_count);
-  check_room("index", buffers.index_capacity, 3 * uint64_t(mesh.view.mesh.triangle_count));
+bool GpuTarget::try_submit(Submission submission) {
+  const DeviceMesh &mesh = *submission.mesh;
+  check_buffers(mesh, submission.buffers);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (look_ && look_atoms_ != mesh.atom_count)
     invalid("the look is of " + std::to_string(look_atoms_) + " atoms, but the mesh was made of " +
             std::to_string(mesh.atom_count));
-}
-
-bool GpuTarget::try_submit(Submission submission) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   look_at_clock();
   if (status_.stopped || waiting_.size() >= QSES_GPU_MAX_WAITING) return false;
   submission.look = look_;

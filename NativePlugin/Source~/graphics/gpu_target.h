@@ -37,9 +37,8 @@ class GpuTarget {
 
   // ---- from any thread
   void set_look(std::shared_ptr<const Appearance> look, size_t atom_count);
-  // Throws Error if mesh, buffers and look don't fit together.
-  void check(const DeviceMesh &mesh, const qses_gpu_buffers &buffers) const;
-  // False: as many as may wait do so already, or events have stopped.
+  // False: as many as may wait do so already, or events have stopped. Throws Error if mesh, buffers and look don't fit
+  // together.
   bool try_submit(Submission submission);
   qses_gpu_status status() const;
   bool is_stopped() const;

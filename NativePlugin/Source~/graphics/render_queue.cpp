@@ -209,11 +209,13 @@ void RenderQueue::copy_and_unmap(int device, Lane &lane, const Arrivals &arrival
 // Null: nothing has to be waited for any more.
 std::shared_ptr<const StreamMark> RenderQueue::mark(int device, Lane &lane) {
   try {
-    for (const std::shared_ptr<StreamMark> &one : lane.marks)
-      if (is_sole_holder(one)) return one->set(lane.stream), one;
-    lane.marks.push_back(std::make_shared<StreamMark>(device));
-    lane.marks.back()->set(lane.stream);
-    return lane.marks.back();
+    std::shared_ptr<StreamMark> free = find_unheld(lane.marks);
+    if (!free) {
+      free = std::make_shared<StreamMark>(device);
+      lane.marks.push_back(free);
+    }
+    free->set(lane.stream);
+    return free;
   } catch (...) {
     cudaStreamSynchronize(static_cast<cudaStream_t>(lane.stream));
     cudaGetLastError();

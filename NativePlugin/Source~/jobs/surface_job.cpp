@@ -103,14 +103,18 @@ void SurfaceJob::work() {
       });
     }
     lock.lock();
-    running_ = false;
-    state_.status = status;
-    std::memcpy(state_.message, message, sizeof message);
-    state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
-                   : levels_finished_ == level_count_ ? QSES_JOB_FINISHED
-                                                      : QSES_JOB_CANCELLED;
+    note_end(status, message);
     changed_.notify_all();
   }
+}
+
+void SurfaceJob::note_end(qses_status status, const char *message) {
+  running_ = false;
+  state_.status = status;
+  std::snprintf(state_.message, sizeof state_.message, "%s", message);
+  state_.state = status != QSES_OK                  ? QSES_JOB_FAILED
+                 : levels_finished_ == level_count_ ? QSES_JOB_FINISHED
+                                                    : QSES_JOB_CANCELLED;
 }
 
 void SurfaceJob::run(const SurfaceRequest &request) {
@@ -146,25 +150,21 @@ void SurfaceJob::compute(SurfaceRequest request) {
     choose_levels(request);
     running_ = true;
   }
-  const auto end = [&](qses_job_state state, qses_status status, const char *message) {
+  const auto end = [&](qses_status status, const char *message) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    running_ = false;
-    state_.state = state;
-    state_.status = status;
-    std::snprintf(state_.message, sizeof state_.message, "%s", message);
+    note_end(status, message);
+    if (state_.state == QSES_JOB_FINISHED) hold_what_is_ready();
   };
   try {
     run(request);
   } catch (const Cancelled &) {
-    end(QSES_JOB_CANCELLED, QSES_OK, "");
+    end(QSES_OK, "");
     throw;
   } catch (...) {
-    explain_exception([&](qses_status status, const char *message) { end(QSES_JOB_FAILED, status, message); });
+    explain_exception(end);
     throw;
   }
-  end(QSES_JOB_FINISHED, QSES_OK, "");
-  const std::lock_guard<std::mutex> lock(mutex_);
-  hold_what_is_ready();
+  end(QSES_OK, "");
 }
 
 qses_size_estimate SurfaceJob::estimate(const SurfaceRequest &request) {
@@ -232,10 +232,9 @@ void SurfaceJob::keep(KeptMesh *kept) {
   FinishedMesh &mesh = held_.mesh;
   if (mesh.delivery == QSES_DELIVERY_NONE)
     invalid("the mesh was made with settings.delivery NONE: there is none to be kept");
-  const bool is_on_device = is_for_device(mesh.delivery);
-  const auto on_device = is_on_device ? std::make_shared<DeviceMesh>() : nullptr;
+  const auto on_device = is_for_device(mesh.delivery) ? std::make_shared<DeviceMesh>() : nullptr;
   kept->clear();
-  if (is_on_device) {
+  if (on_device) {
     on_device->view = mesh.on_device;
     on_device->shape = mesh.shape;
     on_device->atom_count = held_.atom_count;

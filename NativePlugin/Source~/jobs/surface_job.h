@@ -77,6 +77,8 @@ class SurfaceJob : private LevelSink {
   void announce(const SurfaceRequest &request);
   // Which levels of the ladder will be computed. The mutex is held.
   void choose_levels(const SurfaceRequest &request);
+  // How the job ended. The mutex is held.
+  void note_end(qses_status status, const char *message);
   void work();
   void run(const SurfaceRequest &request);
 

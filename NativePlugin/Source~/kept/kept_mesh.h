@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kept/device_mesh.h"
+#include "surface/stages/appearance.h"
 
 #include <memory>
 
@@ -28,14 +29,6 @@ struct KeptMesh {
  private:
   MeshLease downloaded_;
 };
-
-// Which of the mesh's atoms are shown; nullptr: all of them.
-using VisibleAtoms = const uint8_t *;
-
-// corners: vertex numbers of a triangle.
-QSES_HOST_DEVICE inline bool is_shown(const uint32_t *corners, const uint32_t *owners, VisibleAtoms visible) {
-  return visible[owners[corners[0]]] && visible[owners[corners[1]]] && visible[owners[corners[2]]];
-}
 
 inline bool is_shown(const qses_mesh &mesh, uint32_t triangle, VisibleAtoms visible) {
   return is_shown(mesh.indices + 3 * size_t(triangle), mesh.owners, visible);

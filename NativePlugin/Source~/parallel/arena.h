@@ -47,7 +47,6 @@ class Arena {
 
   // Bytes that may be held in all; 0: no budget.
   void set_budget(uint64_t bytes) { budget_ = bytes / kArenaUnit * kArenaUnit; }
-  uint64_t budget() const { return budget_; }
   // True if work should be cut into pieces that fit.
   bool has_budget() const { return budget_ > 0; }
   // Bytes beyond which everything is refused: the budget; or what is held and what is free besides, as it was when it

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 namespace quickses {
 
@@ -11,6 +12,14 @@ namespace quickses {
 template <class T>
 bool is_sole_holder(const std::shared_ptr<T> &pointer) {
   return std::weak_ptr<T>(pointer).lock().use_count() == 2;
+}
+
+// One that nobody else holds; null: there is none.
+template <class T>
+std::shared_ptr<T> find_unheld(const std::vector<std::shared_ptr<T>> &pool) {
+  for (const std::shared_ptr<T> &one : pool)
+    if (is_sole_holder(one)) return one;
+  return nullptr;
 }
 
 }  // namespace quickses

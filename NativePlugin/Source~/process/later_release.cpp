@@ -62,7 +62,9 @@ class LaterReleases {
 };
 
 LaterReleases &later_releases() {
-  static LaterReleases &all = *new LaterReleases;  // never destroyed: the thread may be late
+  // Never destroyed, since the thread may be late; and there where no memory is left.
+  alignas(LaterReleases) static unsigned char memory[sizeof(LaterReleases)];
+  static LaterReleases &all = *new (memory) LaterReleases;
   // Whatever the driver registers was registered before.
   static const int registered = std::atexit([] { releasing.end(); });
   (void)registered;

@@ -10,6 +10,7 @@ namespace quickses {
 // Memory of one thread for a brick: columns for what is near it, and its vertices. Grows when a brick needs more; kept
 // between surfaces.
 struct BrickColumns {
+  static constexpr int kMostColumns = 1 << 24;  // kernels have their numbers as floats
   alignas(64) unsigned char vertex_memory[BrickScratch::kVertexBytes];
   GrowingBuffer<HostMemory> atom_memory, arc_memory;
   int atom_capacity = 512, arc_capacity = 1024;
@@ -32,6 +33,9 @@ struct BrickColumns {
   uint64_t bytes() const { return atom_memory.size() + arc_memory.size(); }
   // True if the brick must be done again.
   bool grow(const BrickNeeds &needs) {
+    if (std::max(needs.atoms, needs.arcs) > kMostColumns)
+      invalid("settings.spacing is too wide for so many atoms: more than " + std::to_string(kMostColumns) +
+              " are near each other beside it");
     if (needs.atoms > 0) grow_atoms(needs.atoms + needs.atoms / 2);
     if (needs.arcs > 0) grow_arcs(needs.arcs + needs.arcs / 2);
     return needs.atoms > 0 || needs.arcs > 0;

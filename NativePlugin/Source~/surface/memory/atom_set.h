@@ -45,15 +45,13 @@ class AtomPool {
  public:
   std::shared_ptr<AtomSet> make(size_t count) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (const std::shared_ptr<Set> &set : sets_)
-      if (is_sole_holder(set)) {
-        set->resize(count);
-        return set;
-      }
-    auto made = std::make_shared<Set>();
-    made->resize(count);
-    sets_.push_back(made);
-    return made;
+    std::shared_ptr<Set> set = find_unheld(sets_);
+    if (!set) {
+      set = std::make_shared<Set>();
+      sets_.push_back(set);
+    }
+    set->resize(count);
+    return set;
   }
   uint64_t bytes() const {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -27,7 +27,6 @@ class CountingArena {
   }
   Mark mark() const { return used_; }
   void rewind(Mark mark) { used_ = mark; }
-  uint64_t used() const { return used_; }
   uint64_t peak() const { return peak_; }
   uint64_t limit() const { return limit_; }
   uint64_t available() const { return limit_ > used_ ? limit_ - used_ : 0; }

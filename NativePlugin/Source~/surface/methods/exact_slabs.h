@@ -43,8 +43,7 @@ Slabs slabs_of(const Work &work, const BrickSet &bricks) {
   constexpr uint32_t kMost = 8, kWorthASlab = 400000, kWorthIt = 1000000;
   Slabs slabs;
   const bool goes_out_as_made = work.parameters.has_thin_walls() && work.paints_early() && !work.settings.occlusion &&
-                                !work.will_be_split && work.settings.relaxation_steps <= 1 &&
-                                work.purpose == MeshPurpose::kDelivered;
+                                !work.will_be_split && work.settings.relaxation_steps <= 1;
   if (!goes_out_as_made || !work.memory.goes_to_host() || !work.plan.single_slice || !bricks.table || !bricks.found ||
       !work.executor.foresee("mesh", bricks.found, MeshTotals{}, &slabs.room) || !fits_bases(bricks.count))
     return slabs;

@@ -79,9 +79,7 @@ struct LevelWork : PreparedFrame {
 
   // Whether the mesh, as it is made, has the vertices and normals that will be delivered: then they are painted before
   // anything waits for what is measured.
-  bool paints_early() const {
-    return settings.delivery != QSES_DELIVERY_NONE && !side_normals && !is_cut && !hard_edges;
-  }
+  bool paints_early() const { return purpose == MeshPurpose::kDelivered && !side_normals; }
 };
 
 // Are creases of the mesh of this level split? Not of coarser ones.
@@ -183,12 +181,12 @@ inline uint32_t asked_slice(const qses_settings &settings, uint32_t brick_count,
   return static_cast<uint32_t>(std::max<uint64_t>(1, std::min<uint64_t>(n, brick_count)));
 }
 
-// So many things can be told apart by 32-bit numbers.
-constexpr uint64_t kMostNumbered = 0xffffffffu;
+// So many things can be told apart by 32-bit numbers, and one number be left that is none of theirs.
+constexpr uint64_t kMostNumbered = 0xfffffffeu;
 
 // Throws if the mesh needs more numbers than 32 bits hold.
 inline void check_mesh_size(const MeshCounts &counts) {
-  if (counts.vertices >= kMostNumbered || counts.triangles >= kMostNumbered)
+  if (counts.vertices > kMostNumbered || counts.triangles > kMostNumbered)
     throw Error(QSES_TOO_FINE, "the spacing is too fine for this structure: the mesh would have " +
                                    std::to_string(counts.vertices) + " vertices and " +
                                    std::to_string(counts.triangles) + " triangles, more than 32-bit indices can name");

@@ -10,10 +10,11 @@ namespace quickses {
 
 // Which triangles stay: those whose owners are all visible and whose component is. nullptr: all are.
 struct ShownParts {
-  const uint8_t *atoms, *components;
+  VisibleAtoms atoms;
+  const uint8_t *components;
   QSES_FN bool has(const MeshView &mesh, const uint32_t *t) const {
     if (components && !components[mesh.component_id(t[0])]) return false;
-    return !atoms || (atoms[mesh.owner(t[0])] && atoms[mesh.owner(t[1])] && atoms[mesh.owner(t[2])]);
+    return !atoms || is_shown(t, mesh.owners, atoms);
   }
 };
 

@@ -23,6 +23,14 @@ struct AppearanceView {
   size_t atoms;  // so many, of what is set
 };
 
+// Which of a mesh's atoms are shown; nullptr: all of them.
+using VisibleAtoms = const uint8_t *;
+
+// corners: vertex numbers of a triangle of a whole mesh, whose vertices have these owners.
+QSES_FN bool is_shown(const uint32_t *corners, const uint32_t *owners, VisibleAtoms visible) {
+  return visible[owners[corners[0]]] && visible[owners[corners[1]]] && visible[owners[corners[2]]];
+}
+
 // Writes colours and texture coordinates of a run of vertices, whose owners are known: but where there are more than
 // was anticipated, and they will be made again.
 struct PaintVertices {
