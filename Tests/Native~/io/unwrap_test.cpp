@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <string>
 
@@ -16,7 +17,7 @@ using Vector = Lattice::Vector;
 using Positions = std::vector<float>;
 using Elements = std::vector<uint8_t>;
 
-constexpr uint8_t kHydrogen = 1, kCarbon = 6, kOxygen = 8, kCalcium = 20;
+constexpr uint8_t kHydrogen = 1, kCarbon = 6, kOxygen = 8, kSulfur = 16, kCalcium = 20;
 
 struct BoxCase {
   const char *name;
@@ -186,17 +187,17 @@ TEST(UnwrapTest, BondsInTinyBoxes) {
   expect_all_bonds(Box{{{{1.2, 0, 0}, {0, 1.3, 0}, {0, 0, 1.4}}}}, 5, 10);  // atoms are near to their own images
 }
 
-// Wherever the borders between cells are.
+// Wherever the borders between cells are, and whichever atom is the largest.
 TEST(UnwrapTest, LongBondsAreFoundEverywhere) {
-  const Elements elements(2, kCarbon);
+  const Elements elements = {kHydrogen, kCarbon, kCarbon, kHydrogen};
   for (size_t axis = 0; axis < 3; ++axis) {
     Box box{{{{9, 0, 0}, {0, 9, 0}, {0, 0, 9}}}};
     box.vectors[axis][axis] = 28.3;
     for (int step = 0; step < 300; ++step) {
-      Positions positions(6, 1);
-      positions[axis] = 0.1f * static_cast<float>(step);
-      positions[3 + axis] = positions[axis] + 1.85f;
-      EXPECT_EQ(Unwrapper(elements.data(), positions.data(), 2, box).bond_count(), 1u) << axis << " " << step;
+      Positions positions = {5, 5, 5, 1, 1, 1, 1, 1, 1, 7, 7, 7};
+      positions[3 + axis] = 0.1f * static_cast<float>(step);
+      positions[6 + axis] = positions[3 + axis] + 1.85f;
+      EXPECT_EQ(Unwrapper(elements.data(), positions.data(), 4, box).bond_count(), 1u) << axis << " " << step;
     }
   }
 }
@@ -343,6 +344,51 @@ TEST(UnwrapTest, IonsDoNotHoldMoleculesTogether) {
             1e-4);
     }
   }
+}
+
+// Both ends of a chain touch in the first frame: nearer to each other than atoms of sulfur that are bonded, but not for
+// hydrogen. Later the chain is longer than half of the box.
+TEST(UnwrapTest, ContactsDoNotTakeThePlaceOfLongBonds) {
+  const Box box{{{{12, 0, 0}, {0, 20, 0}, {0, 0, 20}}}};
+  const Elements elements = {kHydrogen, kSulfur, kSulfur, kSulfur, kSulfur, kHydrogen};
+  const Positions ring = {4.525f, 2.469f, 5, 3.3f,  1.926f, 5, 4,      0,      5,
+                          6.05f,  0,      5, 6.75f, 1.926f, 5, 5.525f, 2.469f, 5};
+  const Unwrapper unwrapper(elements.data(), ring.data(), 6, box);
+  EXPECT_EQ(unwrapper.bond_count(), 6u);
+  EXPECT_EQ(unwrapper.molecule_count(), 1u);
+  Positions chain;
+  for (const double x : {0.0, 1.34, 3.39, 5.44, 7.49, 8.83}) add(chain, {x, 5, 5});
+  Positions scattered = chain;
+  Random(7).scatter(scattered, box, 2);
+  unwrapper.apply(box, scattered.data());
+  for (size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(length((position(scattered, i) - position(scattered, 0)) - (position(chain, i) - position(chain, 0))),
+                0, 1e-4)
+        << i;
+}
+
+// In a box of one cell the first two are near to each other on both sides. The nearer image counts, or the bonds of the
+// third would come first.
+TEST(UnwrapTest, OfSeveralImagesTheNearestCounts) {
+  const Box box{{{{3, 0, 0}, {0, 5, 0}, {0, 0, 20}}}};
+  const Elements elements(3, kCarbon);
+  const Positions triangle = {0, 1, 5, 1.3f, 1, 5, 0.769f, 1, 6.403f};  // 1.3 and 1.7, 1.5, 1.6 apart
+  const Unwrapper unwrapper(elements.data(), triangle.data(), 3, box);
+  EXPECT_EQ(unwrapper.bond_count(), 3u);
+  Positions straight = {0, 0.2f, 5, 0, 1.6f, 5, 0, 3, 5};  // the third is nearer to an image of the first
+  unwrapper.apply(box, straight.data());
+  EXPECT_EQ(straight, (Positions{0, 0.2f, 5, 0, 1.6f, 5, 0, 3, 5}));
+}
+
+TEST(UnwrapTest, AtomsThatNeedNotMoveKeepTheirBits) {
+  const Box box{{{{20, 0, 0}, {0, 20, 0}, {0, 0, 20}}}};
+  const Elements elements(2, kCarbon);
+  const Positions before = {1, 1, 1, 1e-20f, -0.f, 1};
+  const Unwrapper unwrapper(elements.data(), before.data(), 2, box);
+  ASSERT_EQ(unwrapper.bond_count(), 1u);
+  Positions after = before;
+  unwrapper.apply(box, after.data());
+  EXPECT_EQ(std::memcmp(before.data(), after.data(), 6 * sizeof(float)), 0);
 }
 
 // A sheet that is bonded to its own images can't be made whole, but stays what it is.
