@@ -52,6 +52,23 @@ double plain_distance(const qses_mesh &m, const Ray &ray, const uint8_t *visible
   return nearest;
 }
 
+// A corner weighs as much as the part of the triangle that is opposite to it.
+void expect_heaviest_corner(const qses_mesh &m, const qses_hit &hit) {
+  const uint32_t *const corner = m.indices + 3 * size_t(hit.triangle);
+  const Vector at = {hit.position[0], hit.position[1], hit.position[2]};
+  const auto area = [](const Vector &a, const Vector &b, const Vector &c) {
+    const Vector n = cross(b - a, c - a);
+    return std::sqrt(dot(n, n));
+  };
+  double parts[3], most = 0, own = -1;
+  for (size_t k = 0; k < 3; ++k) {
+    parts[k] = area(at, position_of(m, corner[(k + 1) % 3]), position_of(m, corner[(k + 2) % 3]));
+    most = std::max(most, parts[k]);
+    if (hit.vertex == corner[k]) own = parts[k];
+  }
+  EXPECT_GE(own, most - 1e-5) << "of another corner, or of none";
+}
+
 // What is picked is on the ray and on the triangle, and nearest.
 void expect_nearest(const qses_mesh &m, const Ray &ray, const qses_hit &hit, const std::vector<uint8_t> &visible = {}) {
   const uint8_t *const mask = visible.empty() ? nullptr : visible.data();
@@ -65,8 +82,7 @@ void expect_nearest(const qses_mesh &m, const Ray &ray, const qses_hit &hit, con
   EXPECT_GE(hit.distance, perhaps - slack);
   ASSERT_LT(hit.triangle, m.triangle_count);
   EXPECT_TRUE(is_shown(m, hit.triangle, mask));
-  const uint32_t *const corner = m.indices + 3 * size_t(hit.triangle);
-  EXPECT_TRUE(hit.vertex == corner[0] || hit.vertex == corner[1] || hit.vertex == corner[2]);
+  expect_heaviest_corner(m, hit);
   EXPECT_EQ(hit.owner, m.owners[hit.vertex]);
   double length = 0;
   for (size_t k = 0; k < 3; ++k) {
@@ -336,25 +352,99 @@ TEST(Pick, WrongArgumentsAreNamed) {
   expect_error(ask(origin, direction), QSES_INVALID_ARGUMENT, {"qses_hit"});
 }
 
-// As on a sharp ridge: where those of the corners cancel each other, it is that of the nearest one.
+// As on a sharp ridge: where those of the corners cancel each other, it is that of the nearest one, whichever it is.
 TEST(Pick, OppositeNormals) {
-  const float positions[] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, normals[] = {0, 0.6f, 0.8f, 0, -0.6f, -0.8f, 1, 0, 0};
+  const float positions[] = {0, 0, 0, 4, 0, 0, 0, 4, 0}, n[] = {0, 0.6f, 0.8f};
   const uint32_t indices[] = {0, 1, 2}, owners[] = {5, 6, 7};
   qses_mesh m = empty_mesh();
   m.vertex_count = 3;
   m.triangle_count = 1;
   m.positions = positions;
-  m.normals = normals;
   m.indices = indices;
   m.owners = owners;
-  m.bounds_max[0] = m.bounds_max[1] = 2;
-  const float origin[] = {1, 0, 3}, direction[] = {0, 0, -1};
-  const qses_hit hit = quickses::pick(m, {}, origin, direction, nullptr);
-  ASSERT_EQ(hit.found, 1);
-  EXPECT_EQ(hit.distance, 3.f);
-  EXPECT_EQ(hit.vertex, 0u);
-  EXPECT_EQ(hit.owner, 5u);
-  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(hit.normal[k], normals[k], 1e-6f);
+  m.bounds_max[0] = m.bounds_max[1] = 4;
+  for (uint32_t nearest = 0; nearest < 3; ++nearest)
+    for (const float side : {1.f, -1.f}) {
+      float normals[9];
+      for (uint32_t k = 0; k < 9; ++k) normals[k] = k / 3 == nearest ? n[k % 3] : -n[k % 3];
+      m.normals = normals;
+      // The nearest one weighs as much as both others.
+      const float origin[] = {nearest == 1 ? 2.f : 1.f, nearest == 2 ? 2.f : 1.f, 3 * side},
+                  direction[] = {0, 0, -side};
+      const qses_hit hit = quickses::pick(m, {}, origin, direction, nullptr);
+      ASSERT_EQ(hit.found, 1);
+      EXPECT_EQ(hit.distance, 3.f);
+      EXPECT_EQ(hit.vertex, nearest);
+      EXPECT_EQ(hit.owner, owners[nearest]);
+      for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(hit.normal[k], n[k], 1e-6f);
+    }
+}
+
+// What is picked depends neither on how far away the eye is nor on what next to nothing a ray has along other axes.
+TEST(Pick, RaysFromFarAway) {
+  const Context context;
+  set_atoms(context, crambin());
+  const Both both(context, settings(0.7));
+  const qses_mesh mesh = both.fast.view();
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  int met = 0;
+  for (int n = 0; n < 100; ++n) {
+    const auto target = position_of(mesh, static_cast<uint32_t>(random() % mesh.vertex_count));
+    Ray ray{};
+    for (size_t k = 0; k < 3; ++k) {
+      ray.origin[k] = 1e6f * unit(random);
+      ray.direction[k] = static_cast<float>(target[k]) - ray.origin[k];
+    }
+    const qses_hit hit = pick(both.fast, ray);
+    EXPECT_TRUE(hit == pick(both.plain, ray));
+    const double surely = plain_distance(mesh, ray, nullptr, -1e-6), perhaps = plain_distance(mesh, ray, nullptr, 1e-6);
+    if (!hit.found) {
+      EXPECT_EQ(surely, std::numeric_limits<double>::infinity());
+      continue;
+    }
+    // A float says where it is along such a ray to a tenth of an Å only: its place says more.
+    ++met;
+    Vector along, from;
+    for (size_t k = 0; k < 3; ++k) {
+      along[k] = ray.direction[k];
+      from[k] = static_cast<double>(hit.position[k]) - ray.origin[k];
+    }
+    const double length = std::sqrt(dot(along, along)), distance = dot(from, along) / (length * length);
+    const Vector beside = cross(from, along);
+    EXPECT_LT(std::sqrt(dot(beside, beside)) / length, 1e-4) << "beside the ray";
+    EXPECT_LT(distance * length, surely * length + 1e-3);
+    EXPECT_GT(distance * length, perhaps * length - 1e-3);
+    EXPECT_NEAR(hit.distance, distance, 1e-6);
+    expect_heaviest_corner(mesh, hit);
+  }
+  EXPECT_GT(met, 50);
+}
+
+TEST(Pick, RaysAlongAnAxisButForNextToNothing) {
+  const Context context;
+  set_atoms(context, Atoms().add(0, 0, 0, 1.5));
+  const Both both(context, settings(0.3, 1.4, QSES_SURFACE_VDW));
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (const float next_to_nothing : {1e-12f, -1e-20f, 1e-30f}) {
+      Ray ray{{0.1f, 0.1f, 0.1f}, {0, 0, 0}};
+      ray.origin[axis] = -5;
+      ray.origin[(axis + 1) % 3] = 0.2f;
+      ray.direction[axis] = 1;
+      const qses_hit expected = pick(both.plain, ray);
+      ASSERT_TRUE(expected.found);
+      for (size_t other : {axis + 1, axis + 2}) {
+        Ray turned = ray;
+        turned.direction[other % 3] = next_to_nothing;
+        const qses_hit hit = pick(both.fast, turned);
+        EXPECT_TRUE(hit == pick(both.plain, turned));
+        ASSERT_TRUE(hit.found) << axis << other;
+        EXPECT_EQ(hit.triangle, expected.triangle);
+        EXPECT_EQ(hit.vertex, expected.vertex);
+        EXPECT_NEAR(hit.distance, expected.distance, 1e-6);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(hit.position[k], expected.position[k], 1e-6);
+      }
+    }
 }
 
 }  // namespace
