@@ -134,6 +134,47 @@ TEST(Assembly, AtomsBesideAnAxisAreThereTwice) {
   EXPECT_EQ(structure.positions, (std::vector<float>{0.05f, 0.11f, 0, -0.05f, -0.11f, 0}));
 }
 
+// Only copies of the same atom are one.
+TEST(Assembly, DifferentAtomsAtOnePlaceStay) {
+  const Structure structure =
+      parse(kRemark + pdb_atom(" CA ", ' ', "ALA", 'B', 1, 1, 2) + pdb_atom(" CB ", ' ', "ALA", 'B', 1, 1.05, 2),
+            assembly_named("2"));
+  EXPECT_EQ(structure.positions, (std::vector<float>{1, 2, 0, 1.05f, 2, 0}));
+}
+
+// Wherever they are, the first of two stays; what was left out leaves out no other.
+TEST(Assembly, OfCopiesAtOnePlaceTheFirstStays) {
+  struct Shift {
+    double x, y;
+  };
+  const auto kept = [](const std::vector<Shift> &shifts, const std::vector<size_t> &expected) {
+    std::string remark = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+    for (size_t k = 0; k < shifts.size(); ++k)
+      for (int row = 1; row <= 3; ++row) {
+        char line[96];
+        std::snprintf(line, sizeof line, "REMARK 350   BIOMT%d%4d%10.6f%10.6f%10.6f%15.5f\n", row,
+                      static_cast<int>(k) + 1, row == 1 ? 1. : 0., row == 2 ? 1. : 0., row == 3 ? 1. : 0.,
+                      row == 1   ? shifts[k].x
+                      : row == 2 ? shifts[k].y
+                                 : 0.);
+        remark += line;
+      }
+    const Structure structure = parse(remark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 0, 0), assembly_named("1"));
+    std::vector<float> places;
+    for (const size_t k : expected)
+      places.insert(places.end(), {static_cast<float>(shifts[k].x), static_cast<float>(shifts[k].y), 0});
+    EXPECT_EQ(structure.positions, places);
+  };
+  kept({{0, 0}, {0.15, 0}}, {0});
+  kept({{0, 0}, {-0.15, 0}}, {0});
+  kept({{0, 0}, {0.25, 0}}, {0, 1});
+  kept({{0, 0}, {0, 0.25}}, {0, 1});
+  kept({{0, 0}, {5, 0}, {0.1, 0}}, {0, 1});
+  kept({{0, 0}, {0.15, 0}, {0.3, 0}}, {0, 2});
+  kept({{0, 0}, {0.15, 0.05}, {0.05, 0.2}}, {0, 2});
+  kept({{0.1, -0.15}, {0, 0}, {0.12, 0.15}}, {0, 2});
+}
+
 // Pairs of them would not fit into memory.
 TEST(Assembly, ManyCopiesAtOnePlaceAreOne) {
   std::string remark = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
@@ -183,12 +224,14 @@ TEST(Assembly, OfMmcifFiles) {
   EXPECT_EQ(positions("1"), (Positions{1, 2, 3}));
   EXPECT_EQ(positions("1,3"), (Positions{1, 2, 3, 21, 2, 3}));
   EXPECT_EQ(positions("(1-3)"), (Positions{1, 2, 3, 11, 2, 3, 21, 2, 3}));
+  EXPECT_EQ(positions("(3-3)"), (Positions{21, 2, 3}));
   EXPECT_EQ(positions("(1-2,P)"), (Positions{1, 2, 3, 11, 2, 3, -2, 1, 3}));
   // Of products the right one is applied first: (2)(P) turns, then shifts; (P)(2) shifts, then turns.
   EXPECT_EQ(positions("(2)(P)"), (Positions{8, 1, 3}));
   EXPECT_EQ(positions("(P)(2)"), (Positions{-2, 11, 3}));
   EXPECT_EQ(positions("(1,2)(1,3)"), (Positions{1, 2, 3, 21, 2, 3, 11, 2, 3, 31, 2, 3}));
   EXPECT_EQ(positions("( 1 , 3 )"), (Positions{1, 2, 3, 21, 2, 3}));
+  EXPECT_EQ(chains_of(parse(cif_file("1,P"), assembly_named("1"), StructureFormat::kMmcif)), (Names{"X", "X2"}));
   const Structure structure = parse(cif_file("1"), assembly_named("PAU"), StructureFormat::kMmcif);
   EXPECT_EQ(structure.positions, (Positions{-2, 1, 3, 0, 0, 5}));
   EXPECT_EQ(chains_of(structure), (Names{"X", "X"}));
@@ -280,6 +323,69 @@ TEST(Assembly, Errors) {
   other += pdb_atom(" CA ", ' ', "ALA", 'C', 1, 1, 2);
   EXPECT_HAS(error_of(ErrorKind::kInput, [&] { parse(other, assembly_named("1")); }),
              "made of chains that have no atoms");
+}
+
+// Editors and programs that wrote a file again may have left out trailing blanks, and put others or zeros between
+// words.
+TEST(Assembly, RemarksNeedNotHaveAllTheirColumns) {
+  const std::string atoms = pdb_file().substr(sizeof kRemark - 1);
+  const std::vector<float> expected = parse(kRemark + atoms, assembly_named("1")).positions;
+  const auto replaced = [](std::string text, const std::string &what, const std::string &with) {
+    for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
+      text.replace(at, what.size(), with);
+    return text;
+  };
+  const std::string kZero(1, '\0');
+  for (const std::string &remark :
+       {replaced(kRemark, "        0.00000\n", "\n"),  // no shift
+        replaced(kRemark, "0.00000\n", "0.00000" + std::string(60, ' ') + "further columns\n"),
+        replaced(kRemark, "\n", "\r\n"), replaced(kRemark, "  1.000000", "\t\f1.000000"),
+        replaced(kRemark, " 1.000000", kZero + "1.000000"),
+        "REMARK 350\n" + replaced(kRemark, "\n", "\nREMARK 350\n")}) {
+    EXPECT_EQ(parse(remark + atoms, assembly_named("1")).positions, expected) << remark;
+    EXPECT_EQ(parse(remark + atoms, assembly_named("2")).positions, (std::vector<float>{5, 5, 0})) << remark;
+  }
+}
+
+// Up to the last column, and whatever blanks are between them.
+TEST(Assembly, ListsOfChains) {
+  const std::string identity =
+      "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+      "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n";
+  const std::string begin = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: ";
+  std::string atoms;
+  for (const char chain : {'A', 'B', 'C'}) atoms += pdb_atom(" CA ", ' ', "ALA", chain, 1, chain - 'A', 0);
+  std::string wide(38, ' ');
+  wide.replace(0, 2, "A,"), wide.replace(36, 2, ",C");
+  const std::string zero = std::string("A,") + '\0' + "C";
+  for (const std::string &list : {std::string("A, C"), std::string("A,\tC"), std::string("A,\vC\t"), zero, wide}) {
+    const Structure structure = parse(begin + list + "\n" + identity + atoms, assembly_named("1"));
+    EXPECT_EQ(chains_of(structure), (Names{"A", "C"})) << list;
+  }
+  const Structure structure =
+      parse(begin + "A\nREMARK 350                    AND CHAINS: C\n" + identity + atoms, assembly_named("1"));
+  EXPECT_EQ(chains_of(structure), (Names{"A", "C"}));
+}
+
+// What they are called may not steer a terminal that shows the error.
+TEST(Assembly, NamesInErrorsArePlain) {
+  std::string remark = kRemark;
+  remark.replace(remark.find("MOLECULE: 2"), 11, "MOLECULE: \x1b[31m\xc3\xa9");
+  const std::string message = error_of(
+      ErrorKind::kUsage, [&] { parse(remark + pdb_atom(" CA ", ' ', "ALA", 'A', 1, 1, 2), assembly_named("3")); });
+  EXPECT_HAS(message, "there are 1 and ?[31m??");
+}
+
+// No more than that, but so many: as one list, or as a product of lists.
+TEST(Assembly, MayHaveAsManyOperationsAsItSays) {
+  std::string list;
+  for (int k = 1; k < 100000; ++k) list += "1,";
+  std::string product;
+  for (int k = 0; k < 5; ++k) product += "(1,1,1,1,1,1,1,1,1,1)";
+  for (const std::string &expression : {list + "1", product})
+    EXPECT_EQ(parse(cif_file(expression), assembly_named("1"), StructureFormat::kMmcif).positions,
+              (std::vector<float>{1, 2, 3}));
 }
 
 // Damaged remarks give an answer or an error.
