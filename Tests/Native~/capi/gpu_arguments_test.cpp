@@ -51,6 +51,32 @@ TEST(GpuArguments, WithoutADeviceThereAreNoGraphics) {
   expect_error(qses_gpu_check_graphics(QSES_GRAPHICS_OPENGL), QSES_BACKEND_UNAVAILABLE, {});
 }
 
+#if !defined(QUICKSES_HAS_CUDA)
+TEST(GpuArguments, WithoutCudaThereAreNoTargets) {
+  char nothing = 0;  // such a library does not look at what they are
+  const auto some = [&nothing] { return reinterpret_cast<qses_gpu_target *>(&nothing); };
+  qses_gpu_target *target = some();
+  expect_error(qses_gpu_target_create(&target), QSES_BACKEND_UNAVAILABLE, {"without CUDA"});
+  EXPECT_EQ(target, nullptr);
+  qses_gpu_status status;
+  qses_gpu_status_init(&status);
+  expect_error(qses_gpu_target_status(some(), &status), QSES_BACKEND_UNAVAILABLE, {"without CUDA"});
+  // What is wrong is named all the same.
+  const Kept kept;
+  qses_gpu_buffers buffers;
+  qses_gpu_buffers_init(&buffers);
+  const auto submit = [&](const qses_kept_mesh *mesh, const qses_gpu_buffers *given) {
+    return qses_gpu_target_submit(some(), mesh, given, nullptr);
+  };
+  expect_error(submit(nullptr, &buffers), QSES_INVALID_ARGUMENT, {"kept", "NULL"});
+  expect_error(submit(kept, nullptr), QSES_INVALID_ARGUMENT, {"buffers", "NULL"});
+  expect_error(submit(kept, &buffers), QSES_BACKEND_UNAVAILABLE, {"without CUDA"});
+  set_any(&buffers.graphics, 3);
+  expect_error(submit(kept, &buffers), QSES_INVALID_ARGUMENT, {"buffers.graphics", "3"});
+  expect_error(qses_gpu_target_status(some(), nullptr), QSES_INVALID_ARGUMENT, {"status", "NULL"});
+}
+#endif
+
 class GpuTarget : public testing::Test {
  protected:
   void SetUp() override {
