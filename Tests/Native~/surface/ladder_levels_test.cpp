@@ -34,6 +34,7 @@ std::unique_ptr<quickses::SurfaceEngine> make_engine(uint64_t memory_budget = 0)
 class Levels : public quickses::LevelSink {
  public:
   std::vector<quickses::FinishedMesh> meshes;
+  std::vector<double> reached;  // how far the computation was when each of them was finished
   size_t stop_behind = ~size_t(0);
   std::atomic<bool> stop{false};
 
@@ -41,6 +42,7 @@ class Levels : public quickses::LevelSink {
   bool were_beside() const { return given_back_ > 1; }
 
   size_t times_prepared = 0, times_given_back = 0;
+  std::vector<double> steps;  // all that it told of how far it was
 
   void prepared(double) override { ++times_prepared; }
   void give_back() override {
@@ -49,11 +51,13 @@ class Levels : public quickses::LevelSink {
   }
   void finished(quickses::FinishedMesh mesh) override {
     meshes.push_back(std::move(mesh));
+    reached.push_back(last_);
     if (meshes.size() == stop_behind) stop = true;
   }
   void advance(double fraction) override {
     EXPECT_GE(fraction, last_);
     last_ = fraction;
+    steps.push_back(fraction);
   }
   const std::atomic<bool> &stop_flag() const override { return stop; }
 
@@ -253,6 +257,30 @@ TEST_F(LadderLevels, ThatDivideTheCoarsestAreThoseOfTheirSpacing) {
   }
 }
 
+// A level has as large a part of the work as it has of the lattice points at the surface.
+TEST_F(LadderLevels, TellHowFarTheyAre) {
+  if (tested_backend() != QSES_BACKEND_CPU) GTEST_SKIP() << "a GPU makes them beside each other";
+  const Atoms atoms = cluster(400, 5);
+  const qses_settings s = settings(0.5);  // behind levels of 2 and 1
+  Levels levels;
+  compute(*make_engine(), atoms, s, &levels);
+  ASSERT_EQ(levels.reached.size(), 3u);
+  const double total = 1 / 4. + 1 + 4;
+  EXPECT_NEAR(levels.reached[0], 0.25 / total, 1e-6);
+  EXPECT_NEAR(levels.reached[1], 1.25 / total, 1e-6);
+  EXPECT_NEAR(levels.reached[2], 1, 1e-6);
+  ASSERT_FALSE(levels.steps.empty());
+  EXPECT_EQ(levels.steps.front(), 0) << "it begins at the beginning";
+  for (const double reached : levels.reached)  // what it does in each level is told as it goes on
+    EXPECT_GE(std::count_if(levels.steps.begin(), levels.steps.end(), [&](double f) { return f < reached; }), 3);
+  EXPECT_TRUE(std::any_of(levels.steps.begin(), levels.steps.end(), [&](double f) {
+    return f > levels.reached[0] + 0.01 && f < levels.reached[1] - 0.01;
+  })) << "within the second level";
+  EXPECT_TRUE(std::any_of(levels.steps.begin(), levels.steps.end(), [&](double f) {
+    return f > levels.reached[1] + 0.1 && f < levels.reached[2] - 0.1;
+  })) << "within the third";
+}
+
 // Levels that are given up leave nothing behind.
 TEST_F(LadderLevels, MayBeGivenUpAtAnyMoment) {
   const Atoms molecule = cluster(400, 6);
@@ -302,7 +330,7 @@ TEST(LadderLevelsWithABudget, AreHandedOutOnce) {
       unbounded->estimate(*atoms_of(*unbounded, atoms), quickses::Appearance{}, s, stop).smallest_budget;
   Alone alone;
   uint64_t tried_again = 0;
-  for (const double factor : {1.0, 1.2, 1.5, 2.0}) {
+  for (const double factor : {1.0, 1.05, 1.1, 1.2, 1.35, 1.5, 2.0}) {
     SCOPED_TRACE(testing::Message() << factor << " of " << smallest << " bytes");
     const auto engine = make_engine(static_cast<uint64_t>(factor * static_cast<double>(smallest)));
     for (int frame = 0; frame < 2; ++frame) {
