@@ -69,10 +69,10 @@ glm::dmat3 principal_axes(const Balls &balls) {
 
 bool are_parallel(vec3 a, vec3 b) { return glm::length(glm::cross(a, b)) < 1e-3f; }
 
-// How far a ball reaches along one axis of the picture, in the plane through the middle.
+// How far a ball reaches along one axis of the picture, in the plane through the middle. The eye is far outside of it.
 float reach(float across, float near, float radius, float distance) {
-  const float depth = distance - near, tangent = std::min(0.99f, radius / std::hypot(across, depth));
-  return distance * std::tan(std::atan2(std::abs(across), depth) + std::asin(tangent));
+  const float depth = distance - near, sine = radius / std::hypot(across, depth);
+  return distance * std::tan(std::atan2(std::abs(across), depth) + std::asin(sine));
 }
 
 }  // namespace
