@@ -15,7 +15,7 @@ namespace {
 
 using glm::vec3;
 
-constexpr int kBandRows = 64;                         // of samples that are drawn together, in whole pixels
+constexpr int kBandRows = 64;  // of samples that are drawn together, in whole pixels
 constexpr size_t kMostBandBytes = size_t(256) << 20;  // of all threads, but for the first
 constexpr int64_t kSubpixels = 256;
 constexpr uint32_t kNothing = ~uint32_t(0);
@@ -272,7 +272,8 @@ class Painter {
     for (auto first = begin; first != end;) {
       auto last = first + 1;
       while (!settings_.edges && last != end && last->triangle == first->triangle) ++last;
-      const Sample &middle = *(first + (last - first) / 2);
+      const bool is_whole = last - first == n * n;  // then the middle is not half way: rows begin at the left
+      const Sample &middle = *(first + (is_whole ? (n + 1) * (n / 2) : (last - first) / 2));
       sum += srgb_of(shade(band, middle.x, middle.y)) * static_cast<float>(last - first);
       first = last;
     }
