@@ -16,6 +16,7 @@ namespace {
 using glm::vec3;
 
 constexpr int kBandRows = 64;  // of samples that are drawn together, in whole pixels
+static_assert(kBandRows >= kMostSamples, "a band is a pixel high at least");
 constexpr size_t kMostBandBytes = size_t(256) << 20;  // of all threads, but for the first
 constexpr int64_t kSubpixels = 256;
 constexpr uint32_t kNothing = ~uint32_t(0);
@@ -49,7 +50,7 @@ class Painter {
         settings_(settings),
         columns_(settings.width * settings.samples),
         rows_(settings.height * settings.samples),
-        band_height_(std::max(1, kBandRows / settings.samples)) {
+        band_height_(kBandRows / settings.samples) {
     for (size_t byte = 0; byte < pigments_.size(); ++byte) pigments_[byte] = pigment_of(static_cast<uint8_t>(byte));
     turn(camera, middle);
     lamp_ = glm::normalize(kLamp);
