@@ -95,6 +95,39 @@ TEST(PickBoxes, HideNothingThatARayJustTouches) {
   EXPECT_GT(met, 1000);
 }
 
+// Also where all is negative, the eye is far away, or the mesh. All are multiples of 8: rays go through corners.
+TEST(PickBoxes, HideNothingWhereverItIs) {
+  struct Place {
+    int mesh, mesh_size, eye, eye_size;
+  };
+  std::mt19937 random(8);
+  const auto some = [&random](int middle, int size) {
+    return 8 * static_cast<float>(middle + static_cast<int>(random() % static_cast<unsigned>(2 * size + 1)) - size);
+  };
+  for (const Place &place : {Place{-200, 100, -200, 150}, Place{0, 2, 0, 8'000'000}, Place{6'000'000, 2, 0, 2},
+                             Place{-6'000'000, 2, 0, 2}}) {
+    int met = 0;
+    for (int round = 0; round < 5000; ++round) {
+      Triangles one;
+      for (int k = 0; k < 3; ++k)
+        one.vertex(some(place.mesh, place.mesh_size), some(place.mesh, place.mesh_size),
+                   some(place.mesh, place.mesh_size));
+      one.add(0, 1, 2);
+      const Pickable mesh(one);
+      float origin[3], direction[3];
+      for (size_t d = 0; d < 3; ++d) {
+        origin[d] = some(place.eye, place.eye_size);
+        direction[d] = one.position(0)[d] - origin[d];
+      }
+      if (direction[0] == 0 && direction[1] == 0 && direction[2] == 0) continue;
+      const qses_hit plain = mesh.plain(origin, direction), fast = mesh.fast(origin, direction);
+      ASSERT_EQ(std::memcmp(&plain, &fast, sizeof plain), 0) << place.mesh << " round " << round;
+      met += plain.found;
+    }
+    EXPECT_GT(met, 500) << place.mesh;
+  }
+}
+
 // More groups than there is room for to put them in order: each holds a triangle far away, the last one a near one.
 TEST(PickBoxes, TheNearestTriangleMayBeBehindVeryManyGroups) {
   constexpr size_t kGroupTriangles = kRunTriangles * kGroupRuns, kGroups = 300;
