@@ -304,7 +304,8 @@ class LadderEngine : public SurfaceEngine {
 
   bool knows_size() const { return facts_.size.vertices > 0; }
 
-  // Bytes of the arena that a plan takes, if the sizes are as the facts say: the pipeline, only counted.
+  // Bytes of the arena, and of a mesh that stays on the device, that a plan takes, if the sizes are as the facts say:
+  // the pipeline, only counted.
   uint64_t forecast(const FrameInput &in, const MemoryPlan &plan, uint64_t limit) {
     using Counting = CountingExecutor<Executor>;
     Counting counted(executor_, facts_, limit, executor_.arena().has_budget());
@@ -322,7 +323,7 @@ class LadderEngine : public SurfaceEngine {
     prepare_frame(work, in);
     if (work.makes_mesh) work.enter_level(spacing_);
     end_level(work, quickses::begin_level(work));
-    return counted.arena().peak();
+    return counted.arena().peak() + memory.kept();
   }
 
   uint64_t least_bytes(const FrameInput &in) {

@@ -601,7 +601,9 @@ typedef struct qses_size_estimate {
   uint64_t mesh_bytes; /* of the mesh, in host memory; of the whole one if atoms are hidden; 0 with delivery NONE, as
                           are vertices and triangles if no mesh is made */
   uint64_t work_bytes; /* what qses_report.work_bytes_peak would be: on the device with CUDA, else in host memory */
-  uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve */
+  uint64_t smallest_budget; /* the least qses_context_options.memory_budget that would do, with some reserve; with
+                               settings.delivery DEVICE or BOTH also for the mesh, and for those of the context that
+                               are held there now: the last one, too, stays until the next is finished */
 } qses_size_estimate;
 
 /* Empty estimate with struct_size set. NULL is ignored. */

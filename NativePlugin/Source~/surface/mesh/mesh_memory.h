@@ -181,9 +181,10 @@ class MeshMemory<CountingExecutor<Executor>> {
   MeshMemoryView allocate_mesh(CountingExecutor<Executor> &executor, size_t vertices, size_t triangles,
                                const MeshShape &shape, MeshPurpose purpose, bool in_pieces) {
     const MeshArrays arrays(vertices, triangles, shape);
-    const bool is_pooled = keeps_ && purpose == MeshPurpose::kDelivered;
-    if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces))
-      executor.template allocate<char>(is_pooled ? MeshPool::size_for(arrays.bytes()) : arrays.bytes());
+    if (keeps_ && purpose == MeshPurpose::kDelivered)
+      kept_ = std::max<uint64_t>(kept_, MeshPool::size_for(arrays.bytes()));
+    else if (mesh_is_in_arena(Executor::kIsCuda, purpose, in_pieces))
+      executor.template allocate<char>(arrays.bytes());
     return describe_memory(arrays, vertices, triangles, shape, Executor::kIsCuda && in_pieces, nullptr);
   }
   template <class T>
@@ -195,9 +196,12 @@ class MeshMemory<CountingExecutor<Executor>> {
   void note_triangles(CountingExecutor<Executor> &) {}
   void bring_triangles(const MeshMemoryView &, MeshPurpose, size_t) {}
   void bring_vertices(CountingExecutor<Executor> &, const MeshMemoryView &) {}
+  // Bytes of the mesh that stays. In the end they are kept free of work from the beginning.
+  uint64_t kept() const { return kept_; }
 
  private:
   const bool keeps_;
+  uint64_t kept_ = 0;
 };
 
 }  // namespace quickses

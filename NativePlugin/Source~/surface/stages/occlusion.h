@@ -35,6 +35,43 @@ struct OpennessField {
   QSES_FN int find(const glm::ivec3 &brick) const { return bricks.find(brick - bricks.lattice.first_brick); }
 };
 
+// Takes the points of balls out of those outside: a thread, or several, for each of the planes that may cut one.
+struct FillBalls {
+  Balls balls;
+  OpennessField field;
+  uint32_t first;  // item of the grid
+  int planes, shares;
+
+  QSES_HOST_DEVICE void operator()(size_t i) const {
+    const int share = static_cast<int>(i % static_cast<size_t>(shares));
+    i /= static_cast<size_t>(shares);
+    const size_t count = static_cast<size_t>(planes);
+    const Sphere atom = balls.atoms.items[first + i / count];
+    const float r = balls.radius(atom.radius) / kOcclusionPoint;
+    if (is_removed(atom) || r <= 0.f) return;
+    const Vec3<float> c = Vec3<float>(atom.center) * (1.f / kOcclusionPoint);
+    const int z = static_cast<int>(ceilf(c.z - r)) + static_cast<int>(i % count);
+    const float dz = static_cast<float>(z) - c.z, rest = r * r - dz * dz;
+    if (rest <= 0.f) return;
+    for (int y = static_cast<int>(ceilf(c.y - r)) + share; static_cast<float>(y) <= c.y + r; y += shares) {
+      const float dy = static_cast<float>(y) - c.y;
+      for (int x = static_cast<int>(ceilf(c.x - r)); static_cast<float>(x) <= c.x + r; ++x) {
+        const float dx = static_cast<float>(x) - c.x;
+        if (dx * dx + dy * dy < rest) fill(x, y, z);
+      }
+    }
+  }
+
+ private:
+  QSES_FN void fill(int x, int y, int z) const {
+    const int brick = field.find(glm::ivec3(x >> 3, y >> 3, z >> 3));
+    if (brick < 0) return;  // none: the bricks hold all balls
+    const int word = (x & 1) | (y & 1) << 1 | (z & 1) << 2;
+    const uint64_t bit = uint64_t(1) << leaf_bit(x >> 1 & 3, y >> 1 & 3, z >> 1 & 3);
+    atomic_and(field.outside + static_cast<size_t>(brick) * kLeavesPerBrick + static_cast<size_t>(word), ~bit);
+  }
+};
+
 // A place among the nodes along one axis: the node before it, and how far behind.
 struct NodeStep {
   int node;
@@ -246,37 +283,46 @@ BrickSet find_occlusion_bricks(Executor &executor, const NeighborGridView &atoms
                         "occlusion bricks");
 }
 
-// The points' bits, which are found leaf by leaf, in the order of the field's words.
-struct TurnLeaves {
-  uint64_t *words;
-  uint64_t flipped;  // ~0 where the bits are of those inside
-  QSES_HOST_DEVICE void operator()(size_t brick) const {
-    uint64_t *const own = words + brick * kLeavesPerBrick, leaves[kLeavesPerBrick];
-    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) leaves[leaf] = own[leaf] ^ flipped;
-    for (int word = 0; word < kLeavesPerBrick; ++word) {
-      uint64_t outside = 0;
-      for (int bit = 0; bit < 64; ++bit) {
-        const int x = 2 * (bit & 3) + (word & 1), y = 2 * (bit >> 2 & 3) + (word >> 1 & 1),
-                  z = 2 * (bit >> 4) + (word >> 2);
-        outside |= (leaves[leaf_of(x, y, z)] >> leaf_bit(x & 3, y & 3, z & 3) & 1) << bit;
-      }
-      own[word] = outside;
-    }
-  }
-};
-
 // What fills a field: the atoms, somewhat enlarged.
 struct FillWithAtoms {
   NeighborGridView atoms;
   SurfaceParameters parameters;
   template <class Executor>
   void operator()(Executor &executor, const OpennessField &field) const {
-    find_outside_points(executor, Balls{atoms, parameters.max_radius, parameters.depth - kFilledGap}, field.bricks,
-                        field.outside);
-    executor.for_each(field.bricks.count, TurnLeaves{field.outside, 0}, kPlainTeamSteps);
+    executor.fill(Span<uint64_t>{field.outside, size_t(field.bricks.count) * kLeavesPerBrick}, 0xff);
+    const Balls balls{atoms, parameters.max_radius, parameters.depth - kFilledGap};
+    // All of a run have as many planes, so the few large ones are one by themselves.
+    const auto fill = [&](const ItemRun &run, float largest, bool by_rows) {
+      const int planes = static_cast<int>(2.f * balls.radius(largest) / kOcclusionPoint) + 1,
+                shares = by_rows ? planes : 1;
+      const uint64_t rows = static_cast<uint64_t>(planes / shares);
+      executor.for_each(size_t(run.end - run.begin) * static_cast<size_t>(planes) * static_cast<size_t>(shares),
+                        FillBalls{balls, field, run.begin, planes, shares},
+                        kPlainSteps + rows * static_cast<uint64_t>(planes));
+    };
+    const ItemRun large = atoms.large_items();
+    fill({0, large.begin}, atoms.cells.radii.in_cells, false);
+    fill(large, balls.max_radius, true);
   }
 };
-// Or what is within the isovalue.
+
+// Or what is within the isovalue. Signs of its points are found leaf by leaf, where the field's words are then.
+struct TurnSigns {
+  uint64_t *words;
+  QSES_HOST_DEVICE void operator()(size_t brick) const {
+    uint64_t *const own = words + brick * kLeavesPerBrick, signs[kLeavesPerBrick];
+    for (int leaf = 0; leaf < kLeavesPerBrick; ++leaf) signs[leaf] = own[leaf];
+    for (int word = 0; word < kLeavesPerBrick; ++word) {
+      uint64_t outside = 0;
+      for (int bit = 0; bit < 64; ++bit) {
+        const int x = 2 * (bit & 3) + (word & 1), y = 2 * (bit >> 2 & 3) + (word >> 1 & 1),
+                  z = 2 * (bit >> 4) + (word >> 2);
+        outside |= (~signs[leaf_of(x, y, z)] >> leaf_bit(x & 3, y & 3, z & 3) & 1) << bit;
+      }
+      own[word] = outside;
+    }
+  }
+};
 struct FillWithDensity {
   GaussianDensity density;
   template <class Executor>
@@ -284,7 +330,7 @@ struct FillWithDensity {
     const auto at_once = [&](const auto &work_on) { work_on(BrickRange{0, field.bricks.count}); };
     if (field.bricks.count > 0)
       Backend<Executor>::evaluate_density(executor, density, field.bricks, at_once, field.outside);
-    executor.for_each(field.bricks.count, TurnLeaves{field.outside, ~uint64_t(0)}, kPlainTeamSteps);
+    executor.for_each(field.bricks.count, TurnSigns{field.outside}, kPlainTeamSteps);
   }
 };
 
