@@ -279,6 +279,52 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator WhatAHandlerBeginsToReadBringsItsAtoms()
+        {
+            Surface.Source.SetFile(_folder.Write("many.pdb", TestFrames.Pdb(3)));
+            Surface.Loaded += () =>
+            {
+                AssertShowsFile(Surface.Source.Model - 1);
+                if (Surface.Source.Model == 3)
+                    return;
+                ++Surface.Source.Model;
+                Surface.BeginLoadSource();
+            };
+            Surface.BeginLoadSource();
+            yield return SurfaceRig.Until(() => !Surface.IsLoading);
+            Assert.That(_loaded, Is.EqualTo(3));
+            AssertShowsFile(2);
+            Assert.That(Surface.Structure, Is.Not.Null);
+        }
+
+        [UnityTest]
+        public IEnumerator WhatIsReadForNewColoursBringsAtomsThatAreElsewhereByNow()
+        {
+            Surface.Source.SetFile(_folder.Write("small.pdb", TestFrames.Pdb(1)));
+            Surface.BeginLoadSource();
+            yield return SurfaceRig.Until(() => _loaded == 1);
+            _folder.Write("small.pdb", TestFrames.Pdb(new[] { TestFrames.Frame(4) }));
+            Surface.Source.ColorScheme = AtomColorScheme.Chain;
+            Surface.FollowSourceSoon();
+            yield return SurfaceRig.Until(() => _loaded == 2);
+            AssertShowsFile(4);
+        }
+
+        [UnityTest]
+        public IEnumerator NewColoursLeaveAtomsWhereScriptsMovedThem()
+        {
+            Surface.Source.SetFile(_folder.Write("small.pdb", TestFrames.Pdb(1)));
+            Surface.BeginLoadSource();
+            yield return SurfaceRig.Until(() => _loaded == 1);
+            Vector3[] moved = TestMolecules.Moved(Surface.Positions.ToArray(), 1);
+            Surface.SetPositions(moved);
+            Surface.Source.ColorScheme = AtomColorScheme.Chain;
+            Surface.FollowSourceSoon();
+            yield return SurfaceRig.Until(() => _loaded == 2);
+            Assert.That(Surface.Positions.ToArray(), Is.EqualTo(moved));
+        }
+
+        [UnityTest]
         public IEnumerator HandlersMayDoAnything()
         {
             int wired = 0;

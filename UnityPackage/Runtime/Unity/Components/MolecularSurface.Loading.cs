@@ -126,9 +126,10 @@ namespace QuickSes
             if (_load.Tick())
             {
                 StructureLoad load = _load;
+                bool withAtoms = _loadsAtoms;
                 _load = null;
-                TakeLoaded(load, _loadsAtoms);
-                _loadsAtoms = false;
+                _loadsAtoms = false; // first, since handlers may begin another one
+                TakeLoaded(load, withAtoms);
             }
             else
             {
@@ -150,7 +151,7 @@ namespace QuickSes
                 return FailToLoad(error);
             load.File.Dispose();
             LoadedStructure loaded = structures[0];
-            if (withAtoms || loaded.Positions.Length != Session.Atoms.Count) // the file may be another one by now
+            if (withAtoms || loaded.AtomsHash != _atomsHash) // the file may be another one by now
                 SetAtomsOf(loaded);
             else
                 ColorAtomsOf(loaded);
