@@ -211,6 +211,7 @@ namespace QuickSes
             for (int k = 1; k < structures.Length; ++k)
                 _played[k] = new PlayedAtoms(_loadedSurfaces[k - 1].Surface, structures[k], null, ShowAgain);
             ShowAgain();
+            FollowColorScheme(); // it may be another one since they began to be read
             OpenFrames(file);
         }
 
