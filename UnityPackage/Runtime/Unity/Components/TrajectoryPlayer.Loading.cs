@@ -218,7 +218,7 @@ namespace QuickSes
         private void OpenFrames(MoleculeFile structureFile)
         {
             MoleculeFile file = _framesFile ?? structureFile;
-            TrajectoryFormat format = _framesFile != null ? _trajectorySource.Format : TrajectoryFormat.Pdb;
+            TrajectoryFormat format = _framesFile != null ? _loadedTrajectorySource.Format : TrajectoryFormat.Pdb;
             if (file != structureFile)
                 structureFile.Dispose();
             _framesFile = null;
@@ -236,7 +236,7 @@ namespace QuickSes
             string structure = string.IsNullOrWhiteSpace(assembly) ? "the file of the structure"
                 : $"assembly '{assembly}' of the structure, which fits no trajectory,";
             _prefetcher = new FramePrefetcher(new TrajectoryFrameReader(file, format, IndicesOfAll(),
-                Structure.FileElements.ToArray(), structure, _unwrap), _prefetchFrames);
+                Structure.FileElements.ToArray(), structure, _loadedUnwrap), _loadedPrefetchFrames);
             RequestUpdate();
         }
 
