@@ -77,6 +77,21 @@ namespace QuickSes.Tests
             SurfaceMeshes.AssertShows(_rig.Surface, positions, radii);
         }
 
+        [Test]
+        public void WhatWasNeverEnabledIsComputedInItsColour([Values] bool isSet)
+        {
+            var hidden = new GameObject("never enabled");
+            hidden.SetActive(false);
+            var surface = hidden.AddComponent<MolecularSurface>();
+            if (isSet)
+                surface.BaseColor = new Color32(10, 20, 30, 255);
+            surface.Coloring = AtomColoring.Vertices;
+            surface.SetAtoms(new[] { Vector3.zero }, new[] { 1.5f });
+            Assert.That(surface.ComputeNow());
+            Assert.That(surface.Mesh.colors32, Is.Not.Empty.And.All.EqualTo(surface.BaseColor));
+            Object.DestroyImmediate(hidden);
+        }
+
         [UnityTest]
         public IEnumerator ListenersMayDestroyTheSurface()
         {

@@ -28,7 +28,6 @@ namespace QuickSes
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
-            Session.Atoms.SetBaseColor(Number(_baseColor));
             _editedFrom = ShapeSettings();
             Shown.ForgiveGpu();
             Session.Resume();

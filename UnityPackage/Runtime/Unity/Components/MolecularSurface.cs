@@ -217,6 +217,7 @@ namespace QuickSes
                 {
                     _shown = new ShownSurface();
                     _session = new SurfaceSession(this);
+                    _session.Atoms.SetBaseColor(Number(_baseColor));
                     _isSessionOfPlayMode = IsInPlayMode;
                 }
                 return _session;
