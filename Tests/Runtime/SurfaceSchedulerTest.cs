@@ -80,6 +80,29 @@ namespace QuickSes.Tests
             Assert.That(ContextSlot.NativeContexts, Is.EqualTo(0));
         }
 
+        [Test]
+        public void APrefabThatIsSetUpByAScriptHoldsNoContexts()
+        {
+            SurfaceScheduler.ReleaseContexts(); // those of other tests too, with what never was enabled
+            TestMolecules.Blob(40, 1, out Vector3[] positions, out float[] radii);
+            var prefab = new GameObject("prefab"); // as in a file: nothing of it ever ran
+            prefab.SetActive(false);
+            var original = prefab.AddComponent<MolecularSurface>();
+            original.Spacing = 1;
+            original.Levels = new[] { 3f };
+            original.BaseColor = Color.red;
+            GameObject instance = Object.Instantiate(prefab);
+            instance.SetActive(true);
+            var surface = instance.GetComponent<MolecularSurface>();
+            surface.SetAtoms(positions, radii);
+            Assert.That(surface.ComputeNow());
+            Assert.That(surface.CurrentLevel.Spacing, Is.EqualTo(1));
+            Assert.That(SurfaceScheduler.ContextCount, Is.GreaterThan(0));
+            Object.DestroyImmediate(instance);
+            Assert.That(SurfaceScheduler.ContextCount, Is.EqualTo(0));
+            Object.DestroyImmediate(prefab);
+        }
+
         private bool AreUpToDate()
         {
             foreach (SurfaceRig rig in _rigs)

@@ -38,7 +38,7 @@ namespace QuickSes
         // there would be told to nobody here.
         private void LeaveEditMode()
         {
-            if (_session == null || _session.IsDisposed || _isSessionOfPlayMode == IsInPlayMode)
+            if (!HasSession || _isSessionOfPlayMode == IsInPlayMode)
                 return;
             LoseStructure();
             _session.Dispose();
@@ -55,7 +55,7 @@ namespace QuickSes
         {
             CloseStructure();
             SuspendLoading();
-            if (_session == null || _session.IsDisposed)
+            if (!HasSession)
                 return;
             _session.Drop();
             FollowFilter();
@@ -134,7 +134,7 @@ namespace QuickSes
         private void OnValidate()
         {
             FollowSettings();
-            if (_session != null && !_session.IsDisposed)
+            if (HasSession)
                 _isEdited = true; // the rest later: files are not read and meshes not set while values are validated
         }
 
@@ -144,7 +144,7 @@ namespace QuickSes
         private void FollowSettings()
         {
             LimitSettings();
-            if (_session == null || _session.IsDisposed)
+            if (!HasSession)
                 return;
             _session.Atoms.SetBaseColor(Number(_baseColor));
             if (!ShapeSettings().Equals(_editedFrom))

@@ -177,7 +177,9 @@ namespace QuickSes
             set
             {
                 _baseColor = value;
-                Session.Atoms.SetBaseColor(Number(value));
+                if (!HasSession)
+                    return;
+                _session.Atoms.SetBaseColor(Number(value));
                 LookChanged();
             }
         }
@@ -224,9 +226,12 @@ namespace QuickSes
             ShapeSettingChanged();
         }
 
-        // By a script or an edit: the next edit is measured by it.
+        // By a script or an edit: the next edit is measured by it. What has no session yet, such as a prefab, which never
+        // gets one, will begin with the settings as they are then.
         private void ShapeSettingChanged()
         {
+            if (!HasSession)
+                return;
             _editedFrom = ShapeSettings();
             Changed(SurfaceChange.Shape);
         }

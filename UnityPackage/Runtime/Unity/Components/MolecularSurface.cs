@@ -213,7 +213,7 @@ namespace QuickSes
             {
                 if (_isDestroyed)
                     throw new MissingReferenceException("This MolecularSurface has been destroyed.");
-                if (_session == null || _session.IsDisposed)
+                if (!HasSession)
                 {
                     _shown = new ShownSurface();
                     _session = new SurfaceSession(this);
@@ -223,6 +223,8 @@ namespace QuickSes
                 return _session;
             }
         }
+
+        private bool HasSession => _session != null && !_session.IsDisposed;
 
         private ShownSurface Shown // comes and goes with the session
         {
