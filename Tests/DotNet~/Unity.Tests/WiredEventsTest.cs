@@ -25,13 +25,37 @@ namespace QuickSes.Tests
             Assert.That(told, Is.EqualTo(1));
 
             string wired = null;
-            Wiring.Wire(surface.Events.Failed, message => wired = message);
+            Wiring.Wire(surface.Events.Failed, made, message => wired = message);
             surface.Source.SetFile("/no/such/folder/b.pdb");
             Assert.That(surface.LoadSource(), Is.False); // the log would fail the test
             Assert.That(wired, Does.Contain("b.pdb"));
             Assert.That(told, Is.EqualTo(2));
             Object.DestroyImmediate(made);
             yield return null;
+        }
+
+        // As + in the inspector leaves it, and as it is once what was wired is deleted.
+        [Test]
+        public void ARowWithoutTargetOrMethodIsNoListener()
+        {
+            var made = new GameObject("surface");
+            var deleted = new GameObject("deleted");
+            var surface = made.AddComponent<MolecularSurface>();
+            var player = made.AddComponent<TrajectoryPlayer>();
+            foreach (UnityEvent<string> failed in new[] { surface.Events.Failed, player.Events.Failed })
+            {
+                Wiring.Wire(failed, null, message => { }, method: "");
+                Wiring.Wire(failed, made, message => { }, method: "");
+                Wiring.Wire(failed, deleted, message => { });
+            }
+            Object.DestroyImmediate(deleted);
+            surface.Source.SetFile("/no/such/folder/a.pdb");
+            player.StructureSource.SetFile("/no/such/folder/b.pdb");
+            LogAssert.Expect(LogType.Error, new Regex("surface: .*a.pdb"));
+            LogAssert.Expect(LogType.Error, new Regex("surface: structure: .*b.pdb"));
+            Assert.That(surface.LoadSource(), Is.False);
+            Assert.That(player.Load(), Is.False);
+            Object.DestroyImmediate(made);
         }
 
         [UnityTest]
@@ -45,10 +69,10 @@ namespace QuickSes.Tests
             var surface = made.AddComponent<MolecularSurface>();
             var player = made.AddComponent<TrajectoryPlayer>();
             int ofSurface = 0, ofPlayer = 0;
-            Wiring.Wire(surface.Events.Failed, message => { }, UnityEventCallState.Off);
-            Wiring.Wire(player.Events.Failed, message => { }, UnityEventCallState.Off);
-            Wiring.Wire(surface.Events.Failed, message => ++ofSurface, state);
-            Wiring.Wire(player.Events.Failed, message => ++ofPlayer, state);
+            Wiring.Wire(surface.Events.Failed, made, message => { }, UnityEventCallState.Off);
+            Wiring.Wire(player.Events.Failed, made, message => { }, UnityEventCallState.Off);
+            Wiring.Wire(surface.Events.Failed, made, message => ++ofSurface, state);
+            Wiring.Wire(player.Events.Failed, made, message => ++ofPlayer, state);
 
             surface.Source.SetFile("/no/such/folder/a.pdb");
             player.StructureSource.SetFile("/no/such/folder/b.pdb");

@@ -23,33 +23,54 @@ namespace UnityEngine.Events
     public abstract class UnityEventBase
     {
         private readonly List<Delegate> _listeners = new List<Delegate>();
-        private readonly List<UnityEventCallState> _states = new List<UnityEventCallState>(); // of the persistent ones
+        private readonly List<Row> _rows = new List<Row>(); // of the inspector, for the first listeners
 
-        public int GetPersistentEventCount() => _states.Count;
+        private struct Row
+        {
+            public Object Target;
+            public string Method;
+            public UnityEventCallState State;
+        }
 
-        public UnityEventCallState GetPersistentListenerState(int index) => _states[index];
+        public int GetPersistentEventCount() => _rows.Count;
 
-        public void SetPersistentListenerState(int index, UnityEventCallState state) => _states[index] = state;
+        public Object GetPersistentTarget(int index) => _rows[index].Target;
+
+        public string GetPersistentMethodName(int index) => _rows[index].Method;
+
+        public UnityEventCallState GetPersistentListenerState(int index) => _rows[index].State;
+
+        public void SetPersistentListenerState(int index, UnityEventCallState state)
+        {
+            Row row = _rows[index];
+            row.State = state;
+            _rows[index] = row;
+        }
 
         /// <summary>As if it were wired in the inspector.</summary>
-        internal void Wire(Delegate listener, UnityEventCallState state)
+        internal void Wire(Object target, string method, Delegate listener, UnityEventCallState state)
         {
-            _listeners.Insert(_states.Count, listener);
-            _states.Add(state);
+            _listeners.Insert(_rows.Count, listener);
+            _rows.Add(new Row { Target = target, Method = method, State = state });
         }
 
         internal IReadOnlyList<Delegate> Listeners => _listeners;
 
-        internal bool IsCalled(int index) => index >= _states.Count ||
-            _states[index] == UnityEventCallState.EditorAndRuntime ||
-            (_states[index] == UnityEventCallState.RuntimeOnly && Application.isPlaying);
+        internal bool IsCalled(int index)
+        {
+            if (index >= _rows.Count)
+                return true;
+            Row row = _rows[index];
+            return row.Target != null && row.Method.Length > 0 && (row.State == UnityEventCallState.EditorAndRuntime ||
+                (row.State == UnityEventCallState.RuntimeOnly && Application.isPlaying));
+        }
 
         internal void Add(Delegate listener) => _listeners.Add(listener);
 
         internal void Remove(Delegate listener)
         {
             int k = _listeners.LastIndexOf(listener);
-            if (k >= _states.Count)
+            if (k >= _rows.Count)
                 _listeners.RemoveAt(k);
         }
     }

@@ -74,16 +74,19 @@ namespace QuickSes
     internal static class WiredListeners
     {
         /// <summary>
-        /// Whether the event would call any of them now: it passes over those that are off, and those for run time only,
-        /// which is what the inspector begins with, outside of play mode.
+        /// Whether the event would call any of them now: it passes over those that are off, those for run time only,
+        /// which is what the inspector begins with, outside of play mode, and rows without method or target. A static
+        /// method, which only scripts can wire, has no target either and does not count: better told twice than not at all.
         /// </summary>
         public static bool AreAnyCalled(UnityEventBase unityEvent)
         {
             for (int k = 0; k < unityEvent.GetPersistentEventCount(); ++k)
             {
                 UnityEventCallState state = unityEvent.GetPersistentListenerState(k);
-                if (state == UnityEventCallState.EditorAndRuntime ||
-                    (state == UnityEventCallState.RuntimeOnly && Application.isPlaying))
+                bool isOn = state == UnityEventCallState.EditorAndRuntime ||
+                    (state == UnityEventCallState.RuntimeOnly && Application.isPlaying);
+                if (isOn && unityEvent.GetPersistentTarget(k) != null &&
+                    !string.IsNullOrEmpty(unityEvent.GetPersistentMethodName(k)))
                     return true;
             }
             return false;
