@@ -85,6 +85,42 @@ namespace QuickSes.Tests
             }
         }
 
+        // Of one event, those after it are not told: the engine calls them.
+        [Test]
+        public void WhatAWiredListenerThrowsReachesNoCaller()
+        {
+            int laterInOne = 0, ofOthers = 0;
+            _rig = new SurfaceRig();
+            MolecularSurface surface = _rig.Surface;
+            SurfaceEvents events = surface.Events;
+            events.Loaded.AddListener(() => throw new InvalidOperationException("first fault"));
+            events.Loaded.AddListener(() => ++laterInOne);
+            events.SurfaceUpdated.AddListener(() => throw new InvalidOperationException("second fault"));
+            events.RefinementFinished.AddListener(() => ++ofOthers);
+            events.RefinementFinished.AddListener(() => throw new InvalidOperationException("third fault"));
+            events.Failed.AddListener(message => throw new InvalidOperationException("fourth fault"));
+            foreach (string which in new[] { "first", "second", "third", "fourth" })
+                LogAssert.Expect(LogType.Exception, new Regex(which + " fault"));
+            surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
+            Assert.That(surface.LoadSource());
+            Assert.That(surface.ComputeNow());
+            surface.Source.SetFile("/no/such/file.pdb");
+            Assert.That(surface.LoadSource(), Is.False);
+            Assert.That((laterInOne, ofOthers), Is.EqualTo((0, 1)));
+        }
+
+        [Test]
+        public void NorThatOfAPlayer()
+        {
+            using (var playing = new PlayerFixture())
+            {
+                playing.Player.Events.Failed.AddListener(message => throw new InvalidOperationException("its own fault"));
+                LogAssert.Expect(LogType.Exception, new Regex("its own fault"));
+                playing.Player.StructureSource.SetFile("/no/such/file.pdb");
+                Assert.That(playing.Player.Load(), Is.False);
+            }
+        }
+
         [UnityTest]
         public IEnumerator NothingIsFinishedThatWasClearedOrDestroyed()
         {

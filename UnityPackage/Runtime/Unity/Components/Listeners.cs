@@ -70,9 +70,43 @@ namespace QuickSes
         public void Tell(Object owner) => Tell(true, owner);
     }
 
-    /// <summary>Who was wired to a UnityEvent in the inspector.</summary>
+    /// <summary>
+    /// Who listens to a UnityEvent: as <see cref="Listeners"/>, but one that throws keeps the later ones of the event from
+    /// being told, which is the engine's way.
+    /// </summary>
     internal static class WiredListeners
     {
+        /// <param name="unityEvent">The owner's.</param>
+        /// <param name="owner">Nobody is told of what listeners in code have destroyed.</param>
+        public static void Tell(UnityEvent unityEvent, Object owner)
+        {
+            if (owner == null)
+                return;
+            try
+            {
+                unityEvent.Invoke();
+            }
+            catch (Exception e)
+            {
+                Debug.LogException(e, owner);
+            }
+        }
+
+        /// <inheritdoc cref="Tell(UnityEvent, Object)"/>
+        public static void Tell<TTold>(UnityEvent<TTold> unityEvent, TTold told, Object owner)
+        {
+            if (owner == null)
+                return;
+            try
+            {
+                unityEvent.Invoke(told);
+            }
+            catch (Exception e)
+            {
+                Debug.LogException(e, owner);
+            }
+        }
+
         /// <summary>
         /// Whether the event would call any of them now: it passes over those that are off, those for run time only,
         /// which is what the inspector begins with, outside of play mode, and rows without method or target. A static

@@ -78,15 +78,13 @@ namespace QuickSes
         {
             _loggedFailure = default;
             _updated.Tell(level, this);
-            if (this != null) // handlers may destroy it
-                _events.SurfaceUpdated.Invoke();
+            WiredListeners.Tell(_events.SurfaceUpdated, this);
         }
 
         void ISurfaceHost.OnFinished()
         {
             _finished.Tell(this);
-            if (this != null)
-                _events.RefinementFinished.Invoke();
+            WiredListeners.Tell(_events.RefinementFinished, this);
         }
 
         void ISurfaceHost.OnFailed(in QuickSesError error)
@@ -94,8 +92,7 @@ namespace QuickSes
             if (!_failed.IsAny && !WiredListeners.AreAnyCalled(_events.Failed) && IsNewInTheLog(error))
                 Debug.LogError($"{name}: {error.Message}", this);
             _failed.Tell(error, this);
-            if (this != null)
-                _events.Failed.Invoke(error.Message);
+            WiredListeners.Tell(_events.Failed, error.Message, this);
         }
 
         void ISurfaceHost.OnDisposed()

@@ -99,7 +99,7 @@ namespace QuickSes
         {
             _atomsRequested.Tell(this);
             if (IsAlive && !Session.Atoms.IsSet)
-                _events.AtomsRequested.Invoke();
+                WiredListeners.Tell(_events.AtomsRequested, this);
         }
 
         private void AttachMesh()

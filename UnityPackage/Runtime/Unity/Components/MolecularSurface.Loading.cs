@@ -157,8 +157,7 @@ namespace QuickSes
                 ColorAtomsOf(loaded);
             TakeStructure(loaded);
             _loaded.Tell(this);
-            if (this != null)
-                _events.Loaded.Invoke();
+            WiredListeners.Tell(_events.Loaded, this);
             return true;
         }
 

@@ -23,29 +23,25 @@ namespace QuickSes
         private void RaiseLoaded()
         {
             _loaded.Tell(this);
-            if (this != null)
-                _events.Loaded.Invoke();
+            WiredListeners.Tell(_events.Loaded, this);
         }
 
         private void RaiseFrameShown(int frame)
         {
             _frameShown.Tell(frame, this);
-            if (this != null)
-                _events.FrameShown.Invoke(frame);
+            WiredListeners.Tell(_events.FrameShown, frame, this);
         }
 
         private void RaiseLooped()
         {
             _looped.Tell(this);
-            if (this != null)
-                _events.Looped.Invoke();
+            WiredListeners.Tell(_events.Looped, this);
         }
 
         private void RaiseFinished()
         {
             _finished.Tell(this);
-            if (this != null)
-                _events.Finished.Invoke();
+            WiredListeners.Tell(_events.Finished, this);
         }
 
         private void RaiseFailed(int frame)
@@ -56,8 +52,7 @@ namespace QuickSes
             _isDamageLogged |= frame >= 0;
             QuickSesError error = LastError;
             _failed.Tell((frame, error), this);
-            if (this != null)
-                _events.Failed.Invoke(error.Message);
+            WiredListeners.Tell(_events.Failed, error.Message, this);
         }
     }
 }

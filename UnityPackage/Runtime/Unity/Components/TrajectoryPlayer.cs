@@ -23,7 +23,7 @@ namespace QuickSes
         [NonSerialized] private bool _isLoadRequested; // by the inspector
         [NonSerialized] private bool _isLoadDeferred; // by Load, until it is enabled
 
-        // Told at the end of a tick, or of the next one if a handler throws.
+        // Told at the end of a tick; what comes up outside of one, at the beginning of the next.
         [NonSerialized] private bool _isNewFrameUntold;
         [NonSerialized] private PlayHeadEvents _untold;
         [NonSerialized] private bool _isFailureUntold, _isTellingFailure;
@@ -236,8 +236,7 @@ namespace QuickSes
             TellAll();
         }
 
-        // Handlers may do anything: what they unload, disable or destroy has nothing left to tell (CloseFrames). Each
-        // event is taken before its handlers are called, so that those that throw do not hold up the others. It has not
+        // Handlers may do anything: what they unload, disable or destroy has nothing left to tell (CloseFrames). It has not
         // finished as long as it waits for the last frame.
         private void TellAll()
         {
@@ -363,14 +362,8 @@ namespace QuickSes
                 return;
             _isFailureUntold = false;
             _isTellingFailure = true;
-            try
-            {
-                RaiseFailed(-1);
-            }
-            finally
-            {
-                _isTellingFailure = false;
-            }
+            RaiseFailed(-1);
+            _isTellingFailure = false;
         }
 
         private bool AreAtomsInPlace()
