@@ -35,13 +35,8 @@ namespace QuickSes.Editor
                 throw new ArgumentNullException(nameof(surface));
             asset = null;
             error = ErrorOf(assetPath, Extension, typeof(Mesh));
-            if (error.Length > 0 || !TryCompute(surface, goesOn, out error))
-                return false;
-            if (!surface.IsAnyVisible)
-                error = surface.CurrentLevel.TriangleCount == 0
-                    ? $"The surface of '{surface.name}' is empty."
-                    : $"All of the surface of '{surface.name}' is hidden.";
-            return error.Length == 0 && TrySave(surface, assetPath, out asset, out error);
+            return error.Length == 0 && TryCompute(surface, goesOn, out error) &&
+                TrySave(surface, assetPath, out asset, out error);
         }
 
         /// <summary>Asks where to save it; what goes wrong is shown in a dialog.</summary>
@@ -142,17 +137,15 @@ namespace QuickSes.Editor
 
         private static bool TrySave(MolecularSurface surface, string path, out Mesh asset, out string error)
         {
-            error = "";
             var present = AssetDatabase.LoadMainAssetAtPath(path) as Mesh;
             asset = present != null ? present : new Mesh();
             try
             {
-                surface.CopyTo(asset);
-                asset.name = Path.GetFileNameWithoutExtension(path);
-                MeshUtility.SetMeshCompression(asset, ModelImporterMeshCompression.Off);
-                Save(asset, path);
+                error = ErrorOfShown(surface);
+                if (error.Length == 0)
+                    Write(surface, asset, path);
             }
-            catch (UnityException exception)
+            catch (Exception exception) when (exception is UnityException || exception is QuickSesException)
             {
                 error = exception.Message;
             }
@@ -164,6 +157,19 @@ namespace QuickSes.Editor
             if (error.Length > 0)
                 asset = null;
             return error.Length == 0;
+        }
+
+        // Both this and copying bring home what is on the GPU, which may fail.
+        private static string ErrorOfShown(MolecularSurface surface) => surface.IsAnyVisible ? ""
+            : surface.CurrentLevel.TriangleCount == 0 ? $"The surface of '{surface.name}' is empty."
+            : $"All of the surface of '{surface.name}' is hidden.";
+
+        private static void Write(MolecularSurface surface, Mesh asset, string path)
+        {
+            surface.CopyTo(asset);
+            asset.name = Path.GetFileNameWithoutExtension(path);
+            MeshUtility.SetMeshCompression(asset, ModelImporterMeshCompression.Off);
+            Save(asset, path);
         }
 
         /// <summary>Writes an asset that is there, or makes one; throws UnityException if that is not possible.</summary>

@@ -22,6 +22,7 @@ namespace QuickSes.Tests
         private const string MaterialPath = "Assets/a material.mat";
         private const string PrefabPath = "Assets/a.prefab";
 
+        private readonly IGpuLibrary _library = GpuDelivery.Library;
         private MolecularSurface _surface;
         private MeshRenderer _renderer;
 
@@ -35,7 +36,12 @@ namespace QuickSes.Tests
         }
 
         [TearDown]
-        public void OpenGate() => NativeGate.Open();
+        public void OpenGate()
+        {
+            NativeGate.Open();
+            SurfaceScheduler.Delivery = SurfaceDelivery.Host;
+            GpuDelivery.Library = _library;
+        }
 
         [TestCase(MeshPath)]
         [TestCase(MaterialPath)]
@@ -264,6 +270,28 @@ namespace QuickSes.Tests
             Assert.That(_surface.CurrentLevel.IsFinest && !_surface.CurrentLevel.HasCreases, Is.True);
             Assert.That(TryBakePrefab(), Is.Empty);
             Assert.That(_surface.CurrentLevel.HasCreases, Is.True);
+        }
+
+        [Test]
+        public void WhatCantLeaveTheGpuIsTold()
+        {
+            using (var gpu = new StandInGpu { DownloadsFail = true })
+            {
+                GpuDelivery.Library = gpu;
+                SurfaceScheduler.Delivery = SurfaceDelivery.Device;
+                Assert.That(_surface.ComputeNow(), Is.True, _surface.LastError.Message);
+                Assert.That(_surface.UsedDelivery, Is.EqualTo(SurfaceDelivery.Device));
+                int meshes = Engine.LiveObjects<Mesh>();
+                Assert.That(SurfaceBaker.TryBake(_surface, MeshPath, out Mesh asset, out string error), Is.False);
+                Assert.That(error, Does.Contain("no memory"));
+                Assert.That(asset == null, Is.True);
+                Assert.That(TryBakePrefab(), Does.Contain("no memory"));
+                Assert.That(Engine.LiveObjects<Mesh>(), Is.EqualTo(meshes));
+                Assert.That(Directory.GetFiles("Assets"), Is.Empty);
+                gpu.DownloadsFail = false;
+                Assert.That(TryBakePrefab(), Is.Empty);
+                Object.DestroyImmediate(_surface.gameObject);
+            }
         }
 
         [Test]

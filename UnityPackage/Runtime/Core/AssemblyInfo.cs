@@ -4,4 +4,5 @@ using System.Runtime.CompilerServices;
 [assembly: InternalsVisibleTo("QuickSes.Core.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Unity")]
 [assembly: InternalsVisibleTo("QuickSes.Unity.Tests")]
+[assembly: InternalsVisibleTo("QuickSes.Editor.Tests")]
 [assembly: InternalsVisibleTo("QuickSes.Playback")]
