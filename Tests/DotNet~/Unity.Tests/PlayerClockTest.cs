@@ -54,6 +54,20 @@ namespace QuickSes.Tests
             AssertIsAt(10 * Time.maximumDeltaTime, after: 60);
         }
 
+        // The inspector and animations may write such.
+        [Test]
+        public void WithARateThatIsNoNumberItStandsStill(
+            [Values(float.PositiveInfinity, float.NegativeInfinity, float.NaN)] float rate, [Values] PlaybackMode mode)
+        {
+            Player.Mode = mode;
+            AssertIsAt(1, after: 0.1);
+            Engine.Animate(Player, "_framesPerSecond", rate);
+            AssertIsAt(1, after: 0.1);
+            Assert.That(Player.FramesPerSecond, Is.EqualTo(0));
+            Player.FramesPerSecond = 10;
+            AssertIsAt(2, after: 0.1);
+        }
+
         [Test]
         public void WhoJumpsWhileItWaitsPlaysOnFromThere()
         {

@@ -95,10 +95,10 @@ namespace QuickSes
         /// </summary>
         public float FramesPerSecond
         {
-            get => _framesPerSecond;
+            get => IsFinite(_framesPerSecond) ? _framesPerSecond : 0; // the inspector and animations may write others
             set
             {
-                if (float.IsNaN(value) || float.IsInfinity(value))
+                if (!IsFinite(value))
                     throw new ArgumentOutOfRangeException(nameof(value), value, "must be a finite number");
                 _framesPerSecond = value;
             }
@@ -164,6 +164,8 @@ namespace QuickSes
                 SendColors();
             }
         }
+
+        private static bool IsFinite(float value) => !float.IsNaN(value) && !float.IsInfinity(value);
 
         private void SetPlace(double place) => _frame = _knownFrame = (float)place;
 

@@ -218,8 +218,8 @@ namespace QuickSes
         private void SteerHead()
         {
             _head.SetMode(_mode);
-            if (_framesPerSecond != 0)
-                _head.SetSign(_framesPerSecond > 0 ? 1 : -1);
+            if (FramesPerSecond != 0)
+                _head.SetSign(FramesPerSecond > 0 ? 1 : -1);
         }
 
         private void TickFrames(float seconds)
@@ -227,7 +227,7 @@ namespace QuickSes
             SteerHead();
             if (_isPlaying && !_isWaiting)
             {
-                PlayHeadEvents passed = _head.Advance(seconds * Math.Abs((double)_framesPerSecond));
+                PlayHeadEvents passed = _head.Advance(seconds * Math.Abs((double)FramesPerSecond));
                 _isPlaying = (passed & PlayHeadEvents.Finished) == 0;
                 _untold |= passed;
             }
