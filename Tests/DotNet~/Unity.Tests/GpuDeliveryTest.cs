@@ -236,6 +236,17 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator AComponentThatIsRemovedLeavesNoBounds()
+        {
+            SurfaceScheduler.GpuMeshPlan = GpuMeshPlan.WholeBuffers;
+            yield return _gpu.ShowFirst();
+            MeshRenderer renderer = _gpu.Renderer;
+            Assert.That(renderer.HasOwnBounds);
+            Object.DestroyImmediate(Surface);
+            Assert.That(renderer.HasOwnBounds, Is.False);
+        }
+
+        [UnityTest]
         public IEnumerator NothingComesHomeUntilSomebodyAsks()
         {
             yield return _gpu.ShowFirst();

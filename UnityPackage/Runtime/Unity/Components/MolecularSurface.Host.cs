@@ -100,6 +100,9 @@ namespace QuickSes
             _texture?.Hide();
             _texture?.Dispose();
             _texture = null;
+            if (_hasRendererBounds && _renderer != null)
+                _renderer.ResetLocalBounds();
+            _hasRendererBounds = false;
             ForgetOwners();
             _shown.Dispose();
         }
