@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
+using System;
 using System.Reflection;
 using System.Threading;
 using UnityEngine;
@@ -66,9 +67,7 @@ namespace QuickSes.Tests
             var rig = new SurfaceRig();
             rig.Surface.Source.SetAsset(new TextAsset(TestFrames.Pdb(1)) { name = "small.pdb" });
             rig.Surface.BeginLoadSource();
-            var load = (StructureLoad)typeof(MolecularSurface).GetField("_load", Hidden).GetValue(rig.Surface);
-            // Without frames, in which the surface would take it.
-            Assert.That(() => load.Tick(), Is.True.After(Patience, 1));
+            StructureLoad load = AssertReads(typeof(MolecularSurface).GetField("_load", Hidden).GetValue(rig.Surface));
             FieldInfo field = typeof(StructureLoad).GetField("_structures", Hidden);
             Structure structure = ((LoadedStructure[])field.GetValue(load))[0].Structure;
             Assert.That(structure.IsDisposed, Is.False);
@@ -78,6 +77,46 @@ namespace QuickSes.Tests
             Assert.That(structure.IsDisposed, Is.True);
             Assert.That(rig.Surface.IsLoading, Is.False);
             rig.Dispose();
+        }
+
+        [Test]
+        public void WhereNoThreadCanBeStartedThatIsToldAndNothingIsLeftOpen()
+        {
+            Action<Thread> starter = BackgroundThread.Starter;
+            LoadedStructure loaded = Load();
+            Structure structure = loaded.Structure;
+            var playing = new PlayerFixture();
+            try
+            {
+                playing.UseEnsemble(3);
+                Assert.That(playing.Player.Load(), Is.True);
+                AssertReads(typeof(TrajectoryPlayer).GetField("_load", Hidden).GetValue(playing.Player));
+                BackgroundThread.Starter = thread => throw new OutOfMemoryException("no threads left");
+                playing.TickUntil(() => playing.Failures.Count > 0, "it fails");
+                Assert.That(playing.Failures, Is.EqualTo(new[] { "trajectory: no threads left" }));
+                Assert.That(playing.Player.IsLoading, Is.False);
+                Structure played = playing.Player.Structure;
+                playing.Player.enabled = false; // which lets go of the structure
+                Assert.That(played.IsDisposed);
+                loaded.DisposeInBackground();
+                Assert.That(structure.IsDisposed);
+                playing.Player.enabled = true;
+                Assert.That(playing.Player.Load(), Is.True);
+                playing.TickUntil(() => playing.Failures.Count > 1, "it fails");
+                Assert.That(playing.Failures[1], Is.EqualTo("structure: no threads left"));
+            }
+            finally
+            {
+                BackgroundThread.Starter = starter;
+                playing.Dispose();
+            }
+        }
+
+        // Without frames, in which its owner would take what was read.
+        private static StructureLoad AssertReads(object load)
+        {
+            Assert.That(() => ((StructureLoad)load).Tick(), Is.True.After(Patience, 1));
+            return (StructureLoad)load;
         }
 
         private static LoadedStructure Load()

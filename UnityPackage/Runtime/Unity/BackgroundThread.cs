@@ -19,6 +19,9 @@ namespace QuickSes
 
         private readonly Thread _thread;
 
+        /// <summary>Starts each. In tests: one that throws, as where there are no threads left.</summary>
+        internal static Action<Thread> Starter { get; set; } = thread => thread.Start();
+
         /// <summary>Whether no more threads should begin.</summary>
         public static bool IsDomainEnding { get; private set; }
 
@@ -59,11 +62,12 @@ namespace QuickSes
         /// <summary>Must not throw: that would end the program.</summary>
         protected abstract void Run();
 
+        /// <summary>Throws if no more threads can be started.</summary>
         protected void Start()
         {
             lock (s_running)
             {
-                _thread.Start();
+                Starter(_thread);
                 s_running.Add(this);
             }
         }

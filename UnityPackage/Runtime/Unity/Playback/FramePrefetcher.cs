@@ -8,7 +8,8 @@ namespace QuickSes
     /// <summary>
     /// Opens a reader and reads frames ahead on a thread of its own, in the order they will be shown, into a fixed
     /// number of slots of unmanaged memory. Apart from opening and errors neither thread makes garbage. The thread owns
-    /// reader and memory and gives both back as it leaves, so that they never vanish under a read.
+    /// reader and memory and gives both back as it leaves, so that they never vanish under a read. If no thread can be
+    /// started, the reader can't be opened.
     /// </summary>
     internal sealed unsafe class FramePrefetcher : BackgroundThread, IDisposable
     {
@@ -42,7 +43,15 @@ namespace QuickSes
             _memoryLimit = memoryLimit;
             _reader = reader;
             _slotLimit = Math.Max(LeastSlots, slots);
-            Start();
+            try
+            {
+                Start();
+            }
+            catch (Exception exception)
+            {
+                SetOpening(FrameState.Damaged, Describe(exception));
+                Free();
+            }
         }
 
         /// <summary>Whether the reader is open; Damaged: it can't be opened.</summary>
@@ -122,15 +131,20 @@ namespace QuickSes
             }
             finally
             {
-                lock (_gate)
-                {
-                    _slots?.Dispose();
-                    _slots = null;
-                    _hasFreed = true;
-                    _wake.Dispose();
-                }
-                _reader.Dispose();
+                Free();
             }
+        }
+
+        private void Free()
+        {
+            lock (_gate)
+            {
+                _slots?.Dispose();
+                _slots = null;
+                _hasFreed = true;
+                _wake.Dispose();
+            }
+            _reader.Dispose();
         }
 
         // With the lock.

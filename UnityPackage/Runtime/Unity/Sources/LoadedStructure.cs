@@ -15,11 +15,23 @@ namespace QuickSes
         {
             private readonly LoadedStructure _loaded;
 
-            public Disposal(LoadedStructure loaded)
+            private Disposal(LoadedStructure loaded)
                 : base("QuickSES disposal")
             {
                 _loaded = loaded;
-                Start();
+            }
+
+            public static bool TryBegin(LoadedStructure loaded)
+            {
+                try
+                {
+                    new Disposal(loaded).Start();
+                    return true;
+                }
+                catch (Exception)
+                {
+                    return false;
+                }
             }
 
             public override void SendAway()
@@ -80,14 +92,12 @@ namespace QuickSes
 
         /// <summary>
         /// Has it disposed of by a thread of its own, since freeing what the library holds of a large molecule takes some
-        /// milliseconds. Where the domain ends it happens at once.
+        /// milliseconds. Where the domain ends, or there are no threads left, it happens at once.
         /// </summary>
         public void DisposeInBackground()
         {
-            if (BackgroundThread.IsDomainEnding)
+            if (BackgroundThread.IsDomainEnding || !Disposal.TryBegin(this))
                 Dispose();
-            else
-                new Disposal(this);
         }
 
         public void Dispose()
