@@ -277,7 +277,11 @@ namespace QuickSes.Tests
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.Structure, Is.Null);
                 Assert.That(Surface.SetVisible("//A"), Is.False);
+                Assert.That(Surface.VisibleSelectionError, Does.Contain(isAsLong ? "other atoms now" : "4 atoms now, not 5"));
                 Assert.That(_logged, Is.EqualTo(1));
+                Surface.SetAtoms(new Vector3[3], new[] { 1f, 1, 1 });
+                Assert.That(Surface.SetVisible("//A"), Is.False);
+                Assert.That(Surface.VisibleSelectionError, Does.Contain("not of a file"), "these never were");
             }
             finally
             {

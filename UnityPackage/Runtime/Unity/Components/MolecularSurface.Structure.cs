@@ -13,6 +13,7 @@ namespace QuickSes
         [NonSerialized] private bool _areAtomsOfSource;
         [NonSerialized] private MoleculeSource _atomsSource; // then: as it was when it was read
         [NonSerialized] private int _atomsHash; // then: what was read
+        [NonSerialized] private string _structureFault; // why they are not any more; null: they never were
 
         /// <summary>
         /// What the file says about the atoms, in their order: names, residues, chains, selections. null if they are not of
@@ -93,6 +94,7 @@ namespace QuickSes
                 _structure.Dispose();
             _structure = null;
             _ownsStructure = false;
+            _structureFault = null;
         }
 
         // The file may be another one by now.
@@ -113,7 +115,8 @@ namespace QuickSes
             }
             structure?.Dispose();
             _areAtomsOfSource = false; // told once
-            Debug.LogWarning($"{name}: the file of its atoms can't be read again: {fault}", this);
+            _structureFault = $"the file of the atoms can't be read again: {fault}";
+            Debug.LogWarning($"{name}: {_structureFault}", this);
         }
     }
 }

@@ -74,7 +74,7 @@ namespace QuickSes
             }
             if (Structure != null)
                 return ShowSelectionOf(Structure);
-            _visibleError = "The atoms are not of a file, so they have no names to select them by.";
+            _visibleError = _structureFault ?? "The atoms are not of a file, so they have no names to select them by.";
             return false;
         }
 
