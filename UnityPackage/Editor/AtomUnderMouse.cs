@@ -23,6 +23,13 @@ namespace QuickSes.Editor
             SceneView.RepaintAll();
         }
 
+        /// <summary>The inspector goes, and with it what it keeps open.</summary>
+        public void Leave(MolecularSurface surface)
+        {
+            if (_isWanted && surface != null)
+                surface.CloseStructure();
+        }
+
         public void OnSceneGUI(MolecularSurface surface)
         {
             if (!_isWanted)

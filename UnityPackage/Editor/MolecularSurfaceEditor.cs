@@ -61,6 +61,8 @@ namespace QuickSes.Editor
 
         private void OnEnable() => _isSupported = MolecularSurface.IsSupported(out _unsupportedReason);
 
+        private void OnDisable() => _atomUnderMouse.Leave((MolecularSurface)target);
+
         private void DrawUnsupported()
         {
             bool isPlatformSupported = Application.platform == RuntimePlatform.LinuxEditor ||
