@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 using NUnit.Framework;
 using QuickSes.EngineDouble;
+using System;
 using System.Collections;
 using UnityEngine.TestTools;
 
@@ -42,6 +43,14 @@ namespace QuickSes.Tests
             yield return _rig.Settle();
             Engine.Animate(Surface, "_probeRadius", Surface.ProbeRadius);
             Assert.That(Surface.IsBusy, Is.False);
+        }
+
+        [UnityTest]
+        public IEnumerator FramesInWhichTheyStayMakeNoGarbage()
+        {
+            yield return _rig.Settle();
+            var told = (Action)Delegate.CreateDelegate(typeof(Action), Surface, "OnDidApplyAnimationProperties");
+            Garbage.AssertNone(() => told());
         }
 
         [UnityTest]

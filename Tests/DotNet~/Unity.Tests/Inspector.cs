@@ -10,9 +10,13 @@ namespace QuickSes.Tests
 
         public static void Set(MolecularSurface surface, string field, object value)
         {
-            typeof(MolecularSurface).GetField(field, Own).SetValue(surface, value);
+            Write(surface, field, value);
             Validate(surface);
         }
+
+        /// <summary>As from a file, of which players tell nobody.</summary>
+        public static void Write(MolecularSurface surface, string field, object value) =>
+            typeof(MolecularSurface).GetField(field, Own).SetValue(surface, value);
 
         public static void Validate(MolecularSurface surface) =>
             typeof(MolecularSurface).GetMethod("OnValidate", Own).Invoke(surface, null);

@@ -65,6 +65,47 @@ namespace QuickSes.Tests
         }
 
         [UnityTest]
+        public IEnumerator WhatTheSurfaceDoesNotUseComputesNothingUntilItDoes()
+        {
+            MolecularSurface surface = _rig.Surface;
+            surface.Surface = SurfaceKind.Vdw;
+            yield return _rig.Settle();
+            Inspector.Set(surface, "_method", SurfaceMethod.Grid);
+            Assert.That(surface.IsBusy, Is.False);
+            Inspector.Set(surface, "_surface", SurfaceKind.Ses);
+            Assert.That(surface.IsBusy, Is.True);
+            yield return _rig.Settle();
+            Assert.That(surface.CurrentLevel.HasCreases, Is.False, "it is that of the grid method");
+            Inspector.Set(surface, "_sharpCreases", false);
+            Assert.That(surface.IsBusy, Is.False);
+            Inspector.Set(surface, "_method", SurfaceMethod.Exact);
+            yield return _rig.Settle();
+            Inspector.Set(surface, "_sharpCreases", true);
+            yield return _rig.Settle();
+            Assert.That(surface.CurrentLevel.HasCreases, Is.True);
+        }
+
+        [UnityTest]
+        public IEnumerator TheBackEndIsFollowedToo()
+        {
+            yield return _rig.Settle();
+            Inspector.Set(_rig.Surface, "_backend", SurfaceBackend.Cpu);
+            Assert.That(_rig.Surface.IsBusy, Is.True);
+            yield return _rig.Settle();
+        }
+
+        [UnityTest]
+        public IEnumerator MoreLevelsInAFileThanThereCanBeAreLeftOut()
+        {
+            _rig.GameObject.SetActive(false);
+            Inspector.Write(_rig.Surface, "_levels", new[] { 9f, 8, 7, 6, 5, 4, 3, 2, 1, 0.9f });
+            _rig.GameObject.SetActive(true);
+            _rig.Surface.Recompute();
+            yield return _rig.Settle();
+            Assert.That(_rig.Surface.CurrentLevel.LevelCount, Is.EqualTo(SurfaceSettings.MaxLevels + 1));
+        }
+
+        [UnityTest]
         public IEnumerator EditsOfOtherThingsComputeNothing()
         {
             yield return _rig.Settle();

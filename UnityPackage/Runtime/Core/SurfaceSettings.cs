@@ -212,6 +212,11 @@ namespace QuickSes
             Native.LevelCount = (uint)spacings.Length;
         }
 
+        /// <summary>Byte for byte: all members have four, so there is nothing between them.</summary>
+        internal static unsafe bool AreSame(SurfaceSettings one, SurfaceSettings other) =>
+            new ReadOnlySpan<byte>(&one, sizeof(SurfaceSettings)).SequenceEqual(
+                new ReadOnlySpan<byte>(&other, sizeof(SurfaceSettings)));
+
         internal void ThrowIfUninitialised()
         {
             if (Native.StructSize == 0)

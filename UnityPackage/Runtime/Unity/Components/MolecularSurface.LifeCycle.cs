@@ -28,7 +28,7 @@ namespace QuickSes
             var meshRenderer = GetComponent<MeshRenderer>();
             if (meshRenderer.sharedMaterial == null)
                 meshRenderer.sharedMaterial = Resources.Load<Material>(DefaultMaterial);
-            _editedFrom = ShapeSettings();
+            NoteSettings();
             Shown.ForgiveGpu();
             Session.Resume();
             QueueEditorUpdate();
@@ -147,14 +147,10 @@ namespace QuickSes
             if (!HasSession)
                 return;
             _session.Atoms.SetBaseColor(Number(_baseColor));
-            if (!ShapeSettings().Equals(_editedFrom))
-                ShapeSettingChanged();
+            if (NoteSettings())
+                Changed(SurfaceChange.Shape);
             QueueEditorUpdate();
         }
-
-        private SurfaceShapeSettings ShapeSettings() => new SurfaceShapeSettings(
-            _surface, _method, _probeRadius, _gaussianRadiusScale, _gaussianIsovalue, _spacing, _levels, _relaxationSteps, _sharpCreases,
-            _ambientOcclusion, _measureComponents, _compactVertices, _backend);
 
         /// <summary>The source may be another one: it was left to a player, or its asset was imported anew.</summary>
         internal void FollowSourceSoon()

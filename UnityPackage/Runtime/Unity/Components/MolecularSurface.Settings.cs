@@ -226,14 +226,25 @@ namespace QuickSes
             ShapeSettingChanged();
         }
 
-        // By a script or an edit: the next edit is measured by it. What has no session yet, such as a prefab, which never
-        // gets one, will begin with the settings as they are then.
+        // What has no session yet, such as a prefab, which never gets one, will begin with the settings as they are then.
         private void ShapeSettingChanged()
         {
             if (!HasSession)
                 return;
-            _editedFrom = ShapeSettings();
+            NoteSettings();
             Changed(SurfaceChange.Shape);
+        }
+
+        // The inspector does not say what was edited, so the next edit is measured by these. Whether they are others than
+        // those before.
+        private bool NoteSettings()
+        {
+            SurfaceSettings settings = ((ISurfaceHost)this).MakeSettings(out ReadOnlySpan<float> levels);
+            settings.SetLevels(levels.Slice(0, Math.Min(levels.Length, SurfaceSettings.MaxLevels))); // files may have more
+            bool areSame = _backend == _editedBackend && SurfaceSettings.AreSame(settings, _editedFrom);
+            _editedFrom = settings;
+            _editedBackend = _backend;
+            return !areSame;
         }
     }
 }

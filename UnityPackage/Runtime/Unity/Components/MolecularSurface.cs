@@ -97,7 +97,8 @@ namespace QuickSes
         [NonSerialized] private bool _isScriptFed;
         [NonSerialized] private bool _asksForAtoms;
         [NonSerialized] private bool _isEdited; // in the inspector, by Undo, by a prefab
-        [NonSerialized] private SurfaceShapeSettings _editedFrom; // the settings as they changed last
+        [NonSerialized] private SurfaceSettings _editedFrom; // the settings as they changed last
+        [NonSerialized] private SurfaceBackend _editedBackend;
         [NonSerialized] private bool _isDestroyed;
 
         private readonly Listeners<SurfaceLevel> _updated = new Listeners<SurfaceLevel>();
