@@ -171,9 +171,8 @@ namespace QuickSes.Tests
                 return default;
             }
 
-            public QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers, out int gpuEvent)
+            public QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers)
             {
-                gpuEvent = 0;
                 if (_isDisposed)
                     _gpu.Faults.Add("submitted after its end");
                 if (IsStopped || _waiting.Count == MostWaiting)
@@ -186,7 +185,7 @@ namespace QuickSes.Tests
                 if ((ulong)view.VertexCount > buffers.VertexCapacity || 3ul * (ulong)view.TriangleCount > buffers.IndexCapacity)
                     return new QuickSesError(QuickSesStatus.InvalidArgument, "buffers too small");
                 Submission submission = _unused.Count > 0 ? _unused.Pop() : new Submission();
-                submission.Event = _submitted = gpuEvent = _gpu._issued + 1;
+                submission.Event = _submitted = _gpu._issued + 1;
                 submission.Buffers = buffers;
                 long begin = Stopwatch.GetTimestamp();
                 submission.Take(view, _colors.Span, _texcoords.Span, _visible.Span);

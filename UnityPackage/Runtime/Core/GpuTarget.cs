@@ -33,13 +33,11 @@ namespace QuickSes
             }
         }
 
-        public QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers, out int gpuEvent)
+        public QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers)
         {
-            int number = 0;
             QuickSesStatus status;
             fixed (NativeGpuBuffers* given = &buffers)
-                status = NativeMethods.qses_gpu_target_submit(_handle, mesh.Handle, given, &number);
-            gpuEvent = number;
+                status = NativeMethods.qses_gpu_target_submit(_handle, mesh.Handle, given, null);
             return status == QuickSesStatus.Busy
                 ? new QuickSesError(status, "") // may be so in every frame
                 : QuickSesError.FromLastCall(status);

@@ -50,8 +50,7 @@ namespace QuickSes
         /// <summary>Puts a mesh on its way. Busy: later.</summary>
         /// <param name="mesh">Is held by the library for as long as it needs it.</param>
         /// <param name="buffers">Where it goes.</param>
-        /// <param name="gpuEvent">The event after which it is there.</param>
-        QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers, out int gpuEvent);
+        QuickSesError Submit(KeptMesh mesh, in NativeGpuBuffers buffers);
 
         GpuTargetStatus GetStatus();
     }

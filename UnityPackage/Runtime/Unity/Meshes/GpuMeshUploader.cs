@@ -187,7 +187,7 @@ namespace QuickSes
                     return error;
                 _given = given;
             }
-            return _target.Submit(surface, mesh.Buffers, out _);
+            return _target.Submit(surface, mesh.Buffers);
         }
 
         private GpuStep ShowAwaited(AtomLook look)
