@@ -100,7 +100,7 @@ namespace QuickSes
                 _isFollowing = true;
                 _awaited = null;
                 if (mesh == _front || isUrgent)
-                    return Draw(mesh, view, look, _given);
+                    return Draw(mesh, view, look);
                 _awaited = surface;
                 return GpuStep.Waiting;
             }
@@ -196,18 +196,18 @@ namespace QuickSes
                 return GpuStep.Waiting; // it was the last that was submitted
             SurfaceMeshView view = _awaited.View;
             _awaited = null;
-            Draw(_back, view, look, _given);
+            Draw(_back, view, look);
             FreeBack();
             return GpuStep.Shown;
         }
 
-        private GpuStep Draw(GpuMesh mesh, in SurfaceMeshView view, AtomLook look, GivenLook given)
+        private GpuStep Draw(GpuMesh mesh, in SurfaceMeshView view, AtomLook look)
         {
             if (mesh == _back)
                 (_front, _back) = (_back, _front);
             IsShown = true;
             _isFrontLost = false;
-            _front.Draw(view, look, given);
+            _front.Draw(view, look, _given);
             return GpuStep.Shown;
         }
 
