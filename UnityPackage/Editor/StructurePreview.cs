@@ -54,15 +54,6 @@ namespace QuickSes.Editor
             }
         }
 
-        /// <summary>Reads the file, which takes as long as it takes. Never throws for what is in it.</summary>
-        public static StructurePreview Read(MoleculeSource source)
-        {
-            if (!source.TryOpen(out Structure structure, out QuickSesError error))
-                return OfError(error);
-            using (structure)
-                return Of(structure);
-        }
-
         /// <summary>There is nothing to preview.</summary>
         public static StructurePreview OfError(in QuickSesError error) =>
             new StructurePreview { Error = error.Message };

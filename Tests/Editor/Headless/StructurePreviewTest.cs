@@ -33,7 +33,7 @@ namespace QuickSes.Tests
         {
             var source = new MoleculeSource { SkipWater = true, SkipHydrogen = true, Model = 2 };
             source.SetFile(_path);
-            StructurePreview preview = StructurePreview.Read(source);
+            StructurePreview preview = Read(source);
             Assert.That(preview.Error, Is.Empty);
             Assert.That(preview.AtomCount, Is.EqualTo(2));
             Assert.That(preview.FileAtomCount, Is.EqualTo(4));
@@ -48,11 +48,19 @@ namespace QuickSes.Tests
             var source = new MoleculeSource { SkipHydrogen = true };
             source.SetFile(_path);
             StructurePreview preview = InBackground(source);
-            Assert.That(preview.Summary, Is.EqualTo(StructurePreview.Read(source).Summary));
+            Assert.That(preview.Summary, Is.EqualTo(Read(source).Summary));
             source.Selection = "//Z";
-            Assert.That(InBackground(source).Error, Is.EqualTo(StructurePreview.Read(source).Error));
+            Assert.That(InBackground(source).Error, Is.EqualTo(Read(source).Error));
             source.SetFile(_path + "x");
             Assert.That(InBackground(source).Error, Does.Contain(_path + "x"));
+        }
+
+        private static StructurePreview Read(MoleculeSource source)
+        {
+            if (!source.TryOpen(out Structure structure, out QuickSesError error))
+                return StructurePreview.OfError(error);
+            using (structure)
+                return StructurePreview.Of(structure);
         }
 
         private static StructurePreview InBackground(MoleculeSource source)
@@ -72,11 +80,11 @@ namespace QuickSes.Tests
             File.WriteAllText(_path, Model + "END\n");
             var source = new MoleculeSource { SkipWater = false };
             source.SetFile(_path);
-            StructurePreview preview = StructurePreview.Read(source);
+            StructurePreview preview = Read(source);
             Assert.That(preview.Summary, Is.EqualTo("4 atoms, 1 chain (PDB)"));
             Assert.That(preview.HasPlayableModels, Is.False);
             File.WriteAllText(_path, Model.Replace(" A ", "   ") + "END\n");
-            Assert.That(StructurePreview.Read(source).Summary, Is.EqualTo("4 atoms (PDB)"));
+            Assert.That(Read(source).Summary, Is.EqualTo("4 atoms (PDB)"));
         }
 
         [Test]
@@ -89,7 +97,7 @@ namespace QuickSes.Tests
                 "_atom_site.pdbx_PDB_model_num\nATOM 1 C CA ALA A 1 0 0 0 1\nATOM 2 C CA ALA A 1 1 0 0 2\n");
             var source = new MoleculeSource { Format = StructureFormat.Mmcif };
             source.SetFile(_path);
-            StructurePreview preview = StructurePreview.Read(source);
+            StructurePreview preview = Read(source);
             Assert.That(preview.Summary, Is.EqualTo("1 atom, 1 chain, model 1 of 2 (MMCIF)"));
             Assert.That(preview.HasPlayableModels, Is.False, "a player takes PDB files only");
         }
@@ -99,7 +107,7 @@ namespace QuickSes.Tests
         {
             var source = new MoleculeSource { Selection = "//Z" };
             source.SetFile(_path);
-            StructurePreview preview = StructurePreview.Read(source);
+            StructurePreview preview = Read(source);
             Assert.That(preview.Error, Is.Not.Empty);
             Assert.That(preview.Summary, Is.Empty);
         }
@@ -109,7 +117,7 @@ namespace QuickSes.Tests
         {
             var source = new MoleculeSource();
             source.SetFile(_path + "x");
-            Assert.That(StructurePreview.Read(source).Error, Does.Contain(_path + "x"));
+            Assert.That(Read(source).Error, Does.Contain(_path + "x"));
         }
     }
 }
