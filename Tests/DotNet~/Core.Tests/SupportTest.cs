@@ -34,7 +34,7 @@ namespace QuickSes.Tests
             string url = document.RootElement.GetProperty("repository").GetProperty("url").GetString();
             Assert.That(url, Does.StartWith("https://").And.EndsWith(".git"));
             ExpectUnsupported(() => NativeLibrary.Load("/no/such/folder/libquickses.so"),
-                $"Add package from git URL > {url}#upm .");
+                $"Add (Unity 6: Install) package from git URL > {url}#upm .");
         }
 
         [Test]

@@ -62,7 +62,7 @@ namespace QuickSes.Interop
                 "supported; on Linux, glibc 2.34 or later is needed, as in Ubuntu 22.04). ";
             if (isForDevelopers)
                 text += "A checkout of the project has none until it is built (Documentation~/building.md). The " +
-                    "package with its libraries: Package Manager > + > Add package from git URL > " +
+                    "package with its libraries: Package Manager > + > Add (Unity 6: Install) package from git URL > " +
                     $"{PackageUrl} . ";
             return text + reason;
         }
