@@ -2,6 +2,7 @@
 using NUnit.Framework;
 using System;
 using System.Collections.Generic;
+using System.Linq;
 using System.Text.RegularExpressions;
 using UnityEngine;
 using UnityEngine.TestTools;
@@ -16,6 +17,7 @@ namespace QuickSes.EngineDouble.Tests
         private class Recorder : MonoBehaviour
         {
             public static readonly List<string> Calls = new List<string>();
+            public static bool AreNamed;
 
             private void Awake() => Note("Awake");
             private void OnEnable() => Note("OnEnable");
@@ -28,7 +30,7 @@ namespace QuickSes.EngineDouble.Tests
             private void OnDestroy() => Note("OnDestroy");
             private void OnApplicationQuit() => Note("OnApplicationQuit");
 
-            private void Note(string message) => Calls.Add(message);
+            private void Note(string message) => Calls.Add(AreNamed ? $"{message} of {GetType().Name}" : message);
         }
 
         [ExecuteAlways]
@@ -74,7 +76,11 @@ namespace QuickSes.EngineDouble.Tests
         }
 
         [SetUp]
-        public void Forget() => Recorder.Calls.Clear();
+        public void Forget()
+        {
+            Recorder.Calls.Clear();
+            Recorder.AreNamed = false;
+        }
 
         [Test]
         public void MessagesComeInOrder()
@@ -92,6 +98,33 @@ namespace QuickSes.EngineDouble.Tests
             Object.Destroy(recorder);
             Engine.Frame(0.1);
             Assert.That(Taken(), Is.EqualTo(new[] { "OnDisable", "OnDestroy" }));
+        }
+
+        [DefaultExecutionOrder(7)]
+        private sealed class Late : Recorder
+        {
+        }
+
+        [DefaultExecutionOrder(-7)]
+        private sealed class Early : Recorder
+        {
+        }
+
+        [Test]
+        public void WhatHasALaterOrderIsToldLater()
+        {
+            var gameObject = new GameObject();
+            foreach (Type type in new[] { typeof(Late), typeof(Early), typeof(Recorder) })
+                gameObject.AddComponent(type);
+            Taken();
+            Recorder.AreNamed = true;
+            Engine.Frame(0.1);
+            string[] inOrder = { "Early", "Recorder", "Late" };
+            Assert.That(Taken(), Is.EqualTo(new[] { "Start", "Update", "LateUpdate" }
+                .SelectMany(message => inOrder.Select(name => $"{message} of {name}"))));
+            Object.Instantiate(gameObject);
+            Assert.That(Taken(), Is.EqualTo(
+                inOrder.SelectMany(name => new[] { $"Awake of {name}", $"OnEnable of {name}" })));
         }
 
         [Test]

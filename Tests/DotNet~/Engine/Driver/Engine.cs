@@ -197,9 +197,9 @@ namespace QuickSes.EngineDouble
             foreach (MonoBehaviour script in new List<MonoBehaviour>(Lifecycle.Enabled))
                 Lifecycle.Disable(script);
             BeginToPlay(assemblies);
-            foreach (Object item in new List<Object>(ObjectRegistry.Objects))
+            foreach (MonoBehaviour script in Lifecycle.InOrder(AllObjects<MonoBehaviour>()))
             {
-                if (!(item is MonoBehaviour script) || script == null)
+                if (script == null)
                     continue;
                 script.State.IsStarted = false;
                 Lifecycle.Refresh(script);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 using System.Collections.Generic;
+using System.Linq;
 using UnityEngine;
 
 namespace QuickSes.EngineDouble
@@ -16,7 +17,7 @@ namespace QuickSes.EngineDouble
         private static readonly List<MonoBehaviour> s_enabled = new List<MonoBehaviour>();
         private static MonoBehaviour[] s_running = new MonoBehaviour[64];
 
-        /// <summary>Enabled scripts, by the time they were enabled.</summary>
+        /// <summary>Enabled scripts, by their execution order, then by the time they were enabled.</summary>
         public static IReadOnlyList<MonoBehaviour> Enabled => s_enabled;
 
         /// <summary>A script was added.</summary>
@@ -41,10 +42,13 @@ namespace QuickSes.EngineDouble
                     script.State.Messages.Send(script, Message.OnValidate); // the Editor's part
             }
 
-            foreach (MonoBehaviour script in scripts)
+            foreach (MonoBehaviour script in InOrder(scripts))
                 if (script != null)
                     Refresh(script);
         }
+
+        /// <summary>As they wake where they come at once: of a copy or a scene.</summary>
+        public static IEnumerable<MonoBehaviour> InOrder(IEnumerable<MonoBehaviour> scripts) => scripts.OrderBy(OrderOf);
 
         /// <summary>Brings what the script was told in line with what it is now.</summary>
         public static void Refresh(MonoBehaviour script)
@@ -116,7 +120,10 @@ namespace QuickSes.EngineDouble
         public static void Enable(MonoBehaviour script)
         {
             script.State.IsEnabled = true;
-            s_enabled.Add(script);
+            int place = s_enabled.Count;
+            while (place > 0 && OrderOf(s_enabled[place - 1]) > OrderOf(script))
+                --place;
+            s_enabled.Insert(place, script);
             script.State.Messages.Send(script, Message.OnEnable);
         }
 
@@ -151,6 +158,8 @@ namespace QuickSes.EngineDouble
                 script.State.Messages.Send(script, Message.Start);
             }
         }
+
+        private static int OrderOf(MonoBehaviour script) => MessageTable.Of(script.GetType()).ExecutionOrder;
 
         private static int TakeSnapshot()
         {

@@ -49,6 +49,7 @@ namespace QuickSes.EngineDouble
                         typeof(Receiver<>).MakeGenericType(method.DeclaringType), method);
             }
 
+            ExecutionOrder = type.GetCustomAttribute<DefaultExecutionOrder>(true)?.order ?? 0;
             RunsInEditMode = type.IsDefined(typeof(ExecuteAlways), true);
             SingleType = FindSingleType(type);
             var required = new List<Type>();
@@ -58,6 +59,9 @@ namespace QuickSes.EngineDouble
         }
 
         public bool RunsInEditMode { get; }
+
+        /// <summary>Lower ones come first, of all that are told the same.</summary>
+        public int ExecutionOrder { get; }
 
         /// <summary>The type of which one GameObject has one component at most, or null.</summary>
         public Type SingleType { get; }

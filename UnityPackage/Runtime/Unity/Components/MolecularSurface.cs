@@ -15,6 +15,7 @@ namespace QuickSes
     /// <see cref="SurfaceScheduler.UploadBudget"/>, without garbage.</para>
     /// </summary>
     [ExecuteAlways]
+    [DefaultExecutionOrder(100)] // its LateUpdate comes after those of players and scripts, which may give it atoms there
     [DisallowMultipleComponent]
     [RequireComponent(typeof(MeshFilter), typeof(MeshRenderer))]
     [AddComponentMenu("Molecular/Molecular Surface")]
