@@ -79,6 +79,26 @@ namespace QuickSes.Tests
             Assert.That(surface.AtomCount, Is.EqualTo(2));
         }
 
+        // The new bytes are in an array of their own, also where there are as many: other threads may be at those before.
+        [Test]
+        public void WhatIsImportedAnewLeavesTheBytesBefore()
+        {
+            var source = new MoleculeSource();
+            source.SetAsset(Import("a.pdb", Pdb));
+            MoleculeSource before = source.Copy();
+            Import("a.pdb", Pdb.Replace("11.639", "12.639"));
+            Assert.That(before.IsSameAs(source), Is.False);
+            Assert.That(XOfFirstAtom(before), Is.EqualTo(11.639f));
+            Assert.That(XOfFirstAtom(source), Is.EqualTo(12.639f));
+        }
+
+        private static float XOfFirstAtom(MoleculeSource source)
+        {
+            Assert.That(source.TryOpen(out Structure structure, out QuickSesError error), Is.True, error.Message);
+            using (structure)
+                return structure.Positions[0];
+        }
+
         [Test]
         public void DebugDatabasesStayWithUnity()
         {
