@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "render/drawn_mesh.h"
 #include "render/page.h"
 
 namespace quickses::render {
@@ -16,23 +17,10 @@ namespace {
 
 using glm::vec3;
 
-struct Mesh {
-  std::vector<float> positions, normals, occlusion;
-  std::vector<uint8_t> colors;
-  std::vector<uint32_t> indices;
-
+struct Mesh : DrawnMesh {
   void add(vec3 position, vec3 normal) {
     positions.insert(positions.end(), {position.x, position.y, position.z});
     normals.insert(normals.end(), {normal.x, normal.y, normal.z});
-  }
-  io::MeshView view() const {
-    io::MeshView view;
-    view.vertex_count = static_cast<uint32_t>(positions.size() / 3);
-    view.triangle_count = static_cast<uint32_t>(indices.size() / 3);
-    view.positions = positions.data(), view.normals = normals.data(), view.indices = indices.data();
-    if (!colors.empty()) view.colors = colors.data();
-    if (!occlusion.empty()) view.occlusion = occlusion.data();
-    return view;
   }
 };
 

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "render/drawn_mesh.h"
+
 namespace quickses::render {
 namespace {
 
@@ -20,11 +22,7 @@ constexpr Color kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 2
     kGrey{130, 130, 130, 255};
 
 // Triangles that face the eye, unless they are turned round.
-struct Mesh {
-  std::vector<float> positions, normals, occlusion;
-  std::vector<uint8_t> colors;
-  std::vector<uint32_t> indices;
-
+struct Mesh : DrawnMesh {
   uint32_t vertex(vec3 at, Color color) {
     positions.insert(positions.end(), {at.x, at.y, at.z});
     normals.insert(normals.end(), {0, 0, 1});
@@ -38,15 +36,6 @@ struct Mesh {
     const uint32_t a = vertex({low, z}, color), b = vertex({high.x, low.y, z}, color), c = vertex({high, z}, color),
                    d = vertex({low.x, high.y, z}, color);
     indices.insert(indices.end(), {a, b, c, a, c, d});
-  }
-  io::MeshView view() const {
-    io::MeshView view;
-    view.vertex_count = static_cast<uint32_t>(positions.size() / 3);
-    view.triangle_count = static_cast<uint32_t>(indices.size() / 3);
-    view.positions = positions.data(), view.normals = normals.data(), view.indices = indices.data();
-    if (!colors.empty()) view.colors = colors.data();
-    if (!occlusion.empty()) view.occlusion = occlusion.data();
-    return view;
   }
 };
 
@@ -200,6 +189,19 @@ TEST(Picture, ColoursLieBetweenThoseOfTheCorners) {
   EXPECT_GT(brightness(plain, 30, 39), 300);
 }
 
+// Of a triangle that was drawn before with all corners alike: one is darker now, the others hardly are.
+void expect_dark_corner(const Image &before, const Image &image, uint32_t dark) {
+  const int at[3][2] = {{8, 54}, {51, 54}, {30, 8}};
+  for (uint32_t k = 0; k < 3; ++k) {
+    const int darker = brightness(before, at[k][0], at[k][1]) - brightness(image, at[k][0], at[k][1]);
+    if (k == dark) {
+      EXPECT_GT(darker, 60);
+    } else {
+      EXPECT_LT(darker, 20);
+    }
+  }
+}
+
 // Towards the corner that is closed it grows darker; without occlusion all is open.
 TEST(Picture, WhatIsClosedIsDark) {
   const PictureSettings settings = settings_of(60, 60, 1);
@@ -211,15 +213,7 @@ TEST(Picture, WhatIsClosedIsDark) {
     EXPECT_EQ(draw(mesh.view(), camera_for(settings, 3), vec3(0), settings).rgba, open.rgba);
     mesh.occlusion[closed] = 0;
     const Image image = draw(mesh.view(), camera_for(settings, 3), vec3(0), settings);
-    const int at[3][2] = {{8, 54}, {51, 54}, {30, 8}};
-    for (uint32_t k = 0; k < 3; ++k) {
-      const int darker = brightness(open, at[k][0], at[k][1]) - brightness(image, at[k][0], at[k][1]);
-      if (k == closed) {
-        EXPECT_GT(darker, 60);
-      } else {
-        EXPECT_LT(darker, 20);
-      }
-    }
+    expect_dark_corner(open, image, closed);
   }
 }
 
@@ -232,15 +226,7 @@ TEST(Picture, NormalsLieBetweenThoseOfTheCorners) {
     const Image straight = draw(mesh.view(), camera_for(settings, 3), vec3(0), settings);
     mesh.normals[3 * turned] = 0.58f, mesh.normals[3 * turned + 1] = -0.8f, mesh.normals[3 * turned + 2] = 0.1f;
     const Image image = draw(mesh.view(), camera_for(settings, 3), vec3(0), settings);
-    const int at[3][2] = {{8, 54}, {51, 54}, {30, 8}};
-    for (uint32_t k = 0; k < 3; ++k) {
-      const int darker = brightness(straight, at[k][0], at[k][1]) - brightness(image, at[k][0], at[k][1]);
-      if (k == turned) {
-        EXPECT_GT(darker, 60);
-      } else {
-        EXPECT_LT(darker, 20);
-      }
-    }
+    expect_dark_corner(straight, image, turned);
   }
 }
 
