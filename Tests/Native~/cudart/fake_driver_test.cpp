@@ -290,7 +290,9 @@ TEST_P(FullDevice, IsLeftToOthersWhereNoneIsAskedFor) {
     qses_backend backend{};
     qses_backend_description description = empty_description();
     ASSERT_EQ(qses_context_info(context, &backend, &description), QSES_OK);
-    if (cuda != QSES_OK) EXPECT_EQ(backend, QSES_BACKEND_CPU);
+    if (cuda != QSES_OK) {
+      EXPECT_EQ(backend, QSES_BACKEND_CPU);
+    }
     EXPECT_EQ(std::string(description.reason).empty(), backend == QSES_BACKEND_CUDA) << description.reason;
     EXPECT_EQ(description.available, 1);
     on_the_cpu += backend == QSES_BACKEND_CPU ? 1 : 0;

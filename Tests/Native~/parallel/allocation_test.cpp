@@ -77,6 +77,7 @@ class Count {
 
 extern "C" {
 void *__libc_malloc(size_t);
+void __libc_free(void *);
 void *__libc_calloc(size_t, size_t);
 void *__libc_realloc(void *, size_t);
 void *__libc_memalign(size_t, size_t);
@@ -126,14 +127,14 @@ void *operator new(size_t n) { return counted_new(n, 0, CALLER); }
 void *operator new[](size_t n) { return counted_new(n, 0, CALLER); }
 void *operator new(size_t n, std::align_val_t a) { return counted_new(n, static_cast<size_t>(a), CALLER); }
 void *operator new[](size_t n, std::align_val_t a) { return counted_new(n, static_cast<size_t>(a), CALLER); }
-void operator delete(void *p) noexcept { std::free(p); }
-void operator delete[](void *p) noexcept { std::free(p); }
-void operator delete(void *p, size_t) noexcept { std::free(p); }
-void operator delete[](void *p, size_t) noexcept { std::free(p); }
-void operator delete(void *p, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void *p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void *p, size_t, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void *p, size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void *p) noexcept { __libc_free(p); }
+void operator delete[](void *p) noexcept { __libc_free(p); }
+void operator delete(void *p, size_t) noexcept { __libc_free(p); }
+void operator delete[](void *p, size_t) noexcept { __libc_free(p); }
+void operator delete(void *p, std::align_val_t) noexcept { __libc_free(p); }
+void operator delete[](void *p, std::align_val_t) noexcept { __libc_free(p); }
+void operator delete(void *p, size_t, std::align_val_t) noexcept { __libc_free(p); }
+void operator delete[](void *p, size_t, std::align_val_t) noexcept { __libc_free(p); }
 #endif
 
 namespace {
